@@ -1,0 +1,145 @@
+//! The lane: one device under test with all its ports, as the engine sees it.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use crate::{Instant, Line, Participant, Reception, Stimulus, StimulusKind, Transmission};
+
+/// Which of the lane's ports, by its place in [`Lane::ports`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PortIndex(pub usize);
+
+/// Which of the tester's participants that were attached to the lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CompanionIndex(pub usize);
+
+/// What a caller may know of a port. The engine asks these, never which kind of link it is on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PortProperties {
+    /// The role that suites use: `can`, `serial`, `inverter`.
+    pub name: String,
+    /// The link as a bench file writes it: `sim:`, `socketcan:can0`.
+    pub link: String,
+    /// How the tester is set on it.
+    pub line: Line,
+    /// Where instants come from: `simulated`, `kernel`, `hardware`, `user space`.
+    pub timestamps: &'static str,
+    /// How far an instant may be off.
+    pub uncertainty: Duration,
+}
+
+/// Who sent what arrived.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The device under test, or another on the bus.
+    Bus,
+    /// One of the tester's own participants.
+    Companion(CompanionIndex),
+}
+
+/// Something that arrived at a port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Arrival {
+    /// Where.
+    pub port: PortIndex,
+    /// The end of its last bit.
+    pub at: Instant,
+    /// From whom.
+    pub origin: Origin,
+    /// What.
+    pub what: Reception,
+}
+
+/// When a transmission was on the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sent {
+    /// The start of its first bit.
+    pub start: Instant,
+    /// The end of its last bit.
+    pub end: Instant,
+}
+
+/// The link failed: neither a wrong device nor a wrong suite.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum LinkError {
+    /// A frame on a serial port, or characters on a CAN port.
+    #[error("port {port} cannot carry this")]
+    WrongKind {
+        /// The port's name.
+        port: String,
+    },
+    /// No other node took the frame (no acknowledge) until the lane gave up.
+    #[error("nobody on port {port} acknowledged the frame")]
+    NotAcknowledged {
+        /// The port's name.
+        port: String,
+    },
+    /// The link is gone.
+    #[error("port {port} is down: {reason}")]
+    Down {
+        /// The port's name.
+        port: String,
+        /// Why, in the words of the system.
+        reason: String,
+    },
+}
+
+/// A stimulus could not be given.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StimulusError {
+    /// Nothing on this bench offers it.
+    #[error("this bench does not offer it")]
+    NotOffered,
+    /// It was tried and failed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// One device under test with all its ports, played by one thread.
+pub trait Lane {
+    /// The present instant.
+    fn now(&self) -> Instant;
+
+    /// The ports; a [`PortIndex`] counts them.
+    fn ports(&self) -> &[PortProperties];
+
+    /// Sends `what` on `port` at `at`, or at once if that has passed, and returns when it has left: on CAN after
+    /// arbitration and acknowledge. What arrives meanwhile is kept for [`Lane::receive`].
+    ///
+    /// # Errors
+    /// [`LinkError`]: the link failed, or nobody acknowledged a frame.
+    fn send(&mut self, port: PortIndex, at: Instant, what: Transmission)
+    -> Result<Sent, LinkError>;
+
+    /// The next thing that arrived on any port, in the order of arrival; `None` once `until` has come without one.
+    ///
+    /// # Errors
+    /// [`LinkError`]: the link failed.
+    fn receive(&mut self, until: Instant) -> Result<Option<Arrival>, LinkError>;
+
+    /// Sets the tester's own side of a port: another bit rate, say.
+    ///
+    /// # Errors
+    /// [`LinkError`]: the link cannot be set so.
+    fn set_line(&mut self, port: PortIndex, line: Line) -> Result<(), LinkError>;
+
+    /// The kinds of stimulus the bench offers.
+    fn offers(&self) -> Vec<StimulusKind>;
+
+    /// Does something to the device beside the bus.
+    ///
+    /// # Errors
+    /// [`StimulusError`]: not offered here, or it failed.
+    fn stimulate(&mut self, stimulus: &Stimulus) -> Result<(), StimulusError>;
+
+    /// Lets `companion` take part through the tester's port `port`; its own port 0 is that port.
+    fn attach(&mut self, port: PortIndex, companion: Box<dyn Participant>) -> CompanionIndex;
+
+    /// Ends its part.
+    fn detach(&mut self, companion: CompanionIndex);
+
+    /// What the device would show if it could be opened: see [`Participant::state`]. Empty where it cannot.
+    fn device_state(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
+    }
+}

@@ -1,0 +1,20 @@
+//! How frames and bytes travel, with the instant each arrived.
+//!
+//! A [`Lane`] joins the ports of one device under test. It has two primitives: *send on this port at this instant* and
+//! *receive until this instant*. What answers on the other side (a reference device in simulation) and what the tester
+//! does meanwhile (a SYNC producer, an inverter behind a gateway) are [`Participant`]s: driven from outside, with no
+//! clock and no I/O of their own.
+
+mod lane;
+mod participant;
+mod signal;
+pub mod sim;
+mod time;
+
+pub use lane::{
+    Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
+    StimulusError,
+};
+pub use participant::{NotOffered, Outbox, Participant, Stimulus, StimulusKind};
+pub use signal::{Character, Line, Parity, Reception, SerialSettings, StopBits, Transmission};
+pub use time::Instant;

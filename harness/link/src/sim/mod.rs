@@ -1,0 +1,1 @@
+//! Simulated buses on one discrete-event clock.
