@@ -1,0 +1,336 @@
+//! The events of a lane.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Verdict, VerdictCounts};
+
+/// Takes events as they happen.
+pub trait Sink {
+    /// One more event, later than or at the same instant as the last.
+    fn emit(&mut self, event: Event);
+}
+
+impl Sink for Vec<Event> {
+    fn emit(&mut self, event: Event) {
+        self.push(event);
+    }
+}
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+pub enum Event {
+    /// The lane was opened; always the first line of a journal.
+    LaneStarted(Box<LaneStarted>),
+    /// A suite begins on this lane.
+    SuiteStarted(Box<SuiteStarted>),
+    /// A case begins. Skipped cases have this too.
+    CaseStarted(Box<CaseStarted>),
+    /// A step begins.
+    StepStarted(StepStarted),
+    /// A CAN frame was sent or received.
+    Frame(FrameEvent),
+    /// A serial frame (bytes between silences) was sent or received.
+    Serial(Box<SerialEvent>),
+    /// The bench did something to the device beside the bus.
+    Stimulus(Box<StimulusEvent>),
+    /// A time was measured and judged.
+    Measurement(Box<Measurement>),
+    /// A value was recorded without judging.
+    Observation(Box<Observation>),
+    /// Something worth a line that decides nothing: an EMCY, a PDO that nothing expected.
+    Note(Box<Note>),
+    /// A case ended.
+    CaseFinished(Box<CaseFinished>),
+    /// A suite ended on this lane.
+    SuiteFinished(SuiteFinished),
+    /// The lane was closed; a journal without this line is incomplete.
+    LaneFinished(Box<LaneFinished>),
+}
+
+/// A port of the lane, as the link describes it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PortInfo {
+    /// `can`, `serial`.
+    pub name: String,
+    /// `sim:`, `socketcan:can0`.
+    pub link: String,
+    /// `250 kbit/s`, `9600 8N1`.
+    pub line: String,
+    /// Where instants come from.
+    pub timestamps: String,
+    /// How far an instant may be off, in nanoseconds.
+    pub uncertainty_ns: u64,
+}
+
+/// See [`Event::LaneStarted`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LaneStarted {
+    /// The journal's format version.
+    pub format: u32,
+    /// `fieldproof 0.1.0`
+    pub tool: String,
+    /// The device's name in the bench.
+    pub device: String,
+    /// Its title.
+    pub title: String,
+    /// The fault switched on in a reference device, if any.
+    pub fault: Option<String>,
+    /// The seed of the run.
+    pub seed: u64,
+    /// The ports.
+    pub ports: Vec<PortInfo>,
+}
+
+/// See [`Event::SuiteStarted`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SuiteStarted {
+    /// Its id.
+    pub suite: String,
+    /// Its title.
+    pub title: String,
+    /// Its file.
+    pub path: String,
+}
+
+/// A citation.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cite {
+    /// The document.
+    pub document: String,
+    /// The section.
+    pub section: Option<String>,
+}
+
+/// See [`Event::CaseStarted`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseStarted {
+    /// `suite/case[key=value]`.
+    pub id: String,
+    /// `suite/case`.
+    pub written_id: String,
+    /// One line.
+    pub title: String,
+    /// When.
+    pub at_ns: u64,
+    /// Sources it follows.
+    pub cites: Vec<Cite>,
+    /// Sources it decides against.
+    pub against: Vec<Cite>,
+    /// Why it does.
+    pub because: Option<String>,
+    /// Worked examples it plays.
+    pub examples: Vec<String>,
+    /// What it does to the device.
+    pub effects: Vec<String>,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A place in a suite file, with the text of its line, so that a report needs no suite at hand.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Place {
+    /// The file.
+    pub path: String,
+    /// Line, from 1; 0 for no place.
+    pub line: u32,
+    /// First column, from 1.
+    pub column: u32,
+    /// The column after the last.
+    pub end_column: u32,
+    /// The line's text.
+    pub text: String,
+}
+
+/// See [`Event::StepStarted`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StepStarted {
+    /// Its place in the case, from 0, control first.
+    pub step: u32,
+    /// Its line in the suite file.
+    pub line: u32,
+    /// When.
+    pub at_ns: u64,
+}
+
+/// From where to where.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Direction {
+    /// By the tester.
+    Sent,
+    /// By the device, or another on the bus.
+    Received,
+    /// By one of the tester's participants.
+    Companion,
+}
+
+/// See [`Event::Frame`]. The bytes at and after `len` are zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FrameEvent {
+    /// The end of its last bit.
+    pub at_ns: u64,
+    /// The port, by its place in [`LaneStarted::ports`].
+    pub port: u8,
+    /// From where to where.
+    pub direction: Direction,
+    /// The identifier.
+    pub id: u32,
+    /// Whether the identifier has 29 bits.
+    pub extended: bool,
+    /// Whether it is a remote frame.
+    pub remote: bool,
+    /// The data length code.
+    pub len: u8,
+    /// The data.
+    pub data: [u8; 8],
+}
+
+/// See [`Event::Serial`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SerialEvent {
+    /// The end of its last character.
+    pub at_ns: u64,
+    /// The start of its first character.
+    pub start_ns: u64,
+    /// The port.
+    pub port: u8,
+    /// From where to where.
+    pub direction: Direction,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+    /// Whether a character was spoilt (parity, framing).
+    pub spoilt: bool,
+}
+
+/// See [`Event::Stimulus`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StimulusEvent {
+    /// When.
+    pub at_ns: u64,
+    /// `power off`, `process value 6063:00 = -12013`.
+    pub what: String,
+}
+
+/// Limits in nanoseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Not below, if limited.
+    pub min_ns: Option<u64>,
+    /// Not above, if limited.
+    pub max_ns: Option<u64>,
+}
+
+/// See [`Event::Measurement`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// When it was complete.
+    pub at_ns: u64,
+    /// `SDO response time`, `heartbeat period (mean of 10)`.
+    pub name: String,
+    /// What was measured.
+    pub value_ns: u64,
+    /// How far off it may be.
+    pub uncertainty_ns: u64,
+    /// The limits.
+    pub limits: Limits,
+    /// Inside is a pass, outside a fail, across a limit inconclusive.
+    pub verdict: Verdict,
+}
+
+/// See [`Event::Observation`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Observation {
+    /// When.
+    pub at_ns: u64,
+    /// What.
+    pub name: String,
+    /// The value, for people.
+    pub value: String,
+}
+
+/// See [`Event::Note`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Note {
+    /// When.
+    pub at_ns: u64,
+    /// The line.
+    pub text: String,
+}
+
+/// Something that kept a case from passing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Failure {
+    /// What it amounts to: fail, deviation, inconclusive or error.
+    pub verdict: Verdict,
+    /// The step.
+    pub place: Place,
+    /// When.
+    pub at_ns: u64,
+    /// In one sentence: `the abort names another object`.
+    pub what: String,
+    /// What was expected: `581#8041600011000906  SDO abort 6041h:01 06090011h`.
+    pub expected: String,
+    /// What came instead: `nothing within 50 ms`.
+    pub actual: String,
+    /// More to know: which bytes differ, what the deviation's source says.
+    pub notes: Vec<String>,
+}
+
+/// A line of the frames around a failure.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExcerptLine {
+    /// When.
+    pub at_ns: u64,
+    /// The port's name.
+    pub port: String,
+    /// From where to where.
+    pub direction: Direction,
+    /// The frame: can-utils notation, or bytes in hex.
+    pub raw: String,
+    /// What it means.
+    pub decoded: String,
+    /// Whether the failure rests on this line.
+    pub marked: bool,
+}
+
+/// See [`Event::CaseFinished`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseFinished {
+    /// Its id.
+    pub id: String,
+    /// When.
+    pub at_ns: u64,
+    /// How long it took on the lane's clock.
+    pub duration_ns: u64,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why it was skipped.
+    pub reason: Option<String>,
+    /// What kept it from passing; the first one decides what is shown first.
+    pub failures: Vec<Failure>,
+    /// The frames around the failures; empty for a pass.
+    pub excerpt: Vec<ExcerptLine>,
+}
+
+/// See [`Event::SuiteFinished`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SuiteFinished {
+    /// Its id.
+    pub suite: String,
+    /// When.
+    pub at_ns: u64,
+    /// The verdicts of its cases.
+    pub counts: VerdictCounts,
+}
+
+/// See [`Event::LaneFinished`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LaneFinished {
+    /// When.
+    pub at_ns: u64,
+    /// All verdicts.
+    pub counts: VerdictCounts,
+    /// Why it ended before its last case: interrupted, the link failed, the device could not be put back.
+    pub stopped: Option<String>,
+}

@@ -1,0 +1,168 @@
+//! What a device claims of itself: `device.yaml` (the PICS and what surrounds it).
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use crate::Position;
+use crate::model::{Citation, Effect, Source};
+
+/// A device description.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeviceDescription {
+    /// The version of the language: 1.
+    pub language: u32,
+    /// The name suites and the command line use: `kinco-servo`.
+    pub device: String,
+    /// One line for people.
+    pub title: String,
+    /// Documents it cites.
+    pub sources: BTreeMap<String, Source>,
+    /// Its ports by role.
+    pub ports: BTreeMap<String, PortDescription>,
+    /// The CANopen side.
+    pub canopen: Option<CanopenDescription>,
+    /// The Modbus side.
+    pub modbus: Option<ModbusDescription>,
+    /// What it claims to do.
+    pub features: Vec<Feature>,
+    /// How fast it promises to be.
+    pub timing: Timing,
+    /// What the effects of a case may do to things and people, in words: `moves: the shaft turns`.
+    pub dangers: BTreeMap<Effect, String>,
+    /// Where its documents depart from the standard.
+    pub deviates: Vec<Deviation>,
+}
+
+/// A port of the device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PortDescription {
+    /// `{can: 250 kbit/s}`
+    Can {
+        /// Bits a second.
+        bit_rate: u32,
+    },
+    /// `{serial: 9600, parity: none, stop-bits: 1}`; with `companion`, the tester plays that participant there.
+    Serial {
+        /// Bits a second.
+        baud: u32,
+        /// `none`, `even`, `odd`.
+        parity: Parity,
+        /// 1 or 2.
+        stop_bits: u8,
+        /// What the tester plays on this port: `teco-inverter`.
+        companion: Option<String>,
+    },
+}
+
+/// Parity by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parity {
+    /// No parity bit.
+    None,
+    /// Even.
+    Even,
+    /// Odd.
+    Odd,
+}
+
+/// The CANopen side of a device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CanopenDescription {
+    /// Its node-ID out of the box.
+    pub node: u8,
+    /// Its EDS, a file beside the description.
+    pub eds: String,
+}
+
+/// The Modbus side of a device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModbusDescription {
+    /// Its address out of the box.
+    pub address: u8,
+    /// Its register map, a file beside the description.
+    pub registers: Option<String>,
+}
+
+/// How fast a device promises to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Timing {
+    /// From an SDO request to its answer. Where nothing is promised: 500 ms.
+    pub sdo_response: Duration,
+    /// From a Modbus request to its answer. Where nothing is promised: 1 s.
+    pub modbus_response: Duration,
+    /// From power-on or reset to the boot-up message. Where nothing is promised: 5 s.
+    pub boot_up: Duration,
+    /// From an LSS request to its answer. Where nothing is promised: 500 ms.
+    pub lss_response: Duration,
+    /// From an NMT command to the new state. Where nothing is promised: 100 ms.
+    pub nmt_transition: Duration,
+}
+
+/// A documented departure from what a named check expects.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Deviation {
+    /// The check.
+    pub check: String,
+    /// What the device does instead.
+    pub instead: Instead,
+    /// Where it says so.
+    pub cite: Vec<Citation>,
+    /// Where this stands.
+    pub at: Position,
+}
+
+/// What a device does instead of what a check expects.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Instead {
+    /// It answers with this Modbus exception: `{exception: illegal-data-address}`.
+    Exception(u8),
+    /// It aborts with this code: `{abort: 0x06010000}`.
+    Abort(u32),
+    /// A CAN frame like this comes: `{frame: "581#607A6000A0860100"}`.
+    Frame(fieldproof_can::Pattern),
+    /// The value is this: `{value: 17}`.
+    Value(i128),
+    /// It stays silent: `silence`.
+    Silence,
+    /// It does answer where silence was expected: `answer`.
+    Answer,
+}
+
+/// What a device may claim, in the words of the standards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Feature {
+    /// NMT slave with the CiA 301 state machine.
+    NmtSlave,
+    /// Produces heartbeats (1017h).
+    HeartbeatProducer,
+    /// Answers node guarding (100Ch, 100Dh).
+    NodeGuarding,
+    /// SDO server, expedited.
+    SdoServer,
+    /// Segmented SDO transfer.
+    SdoSegmented,
+    /// SDO block transfer.
+    SdoBlock,
+    /// Sends PDOs.
+    Tpdo,
+    /// Receives PDOs.
+    Rpdo,
+    /// PDO mapping can be changed.
+    DynamicMapping,
+    /// Consumes SYNC.
+    SyncConsumer,
+    /// Produces SYNC.
+    SyncProducer,
+    /// Sends EMCY.
+    Emergency,
+    /// LSS slave.
+    Lss,
+    /// Modbus RTU slave.
+    ModbusRtu,
+    /// Modbus TCP server.
+    ModbusTcp,
+    /// SSI output.
+    Ssi,
+    /// CANopen on one side, Modbus master on the other.
+    Gateway,
+}
