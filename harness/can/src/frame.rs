@@ -27,6 +27,19 @@ impl Frame {
         })
     }
 
+    /// A data frame of a length that is known when the program is built; more than 8 bytes do not compile.
+    pub fn of<const LEN: usize>(id: impl Into<Id>, data: [u8; LEN]) -> Frame {
+        const { assert!(LEN <= 8, "a classic frame has at most 8 bytes") };
+        let mut bytes = [0; 8];
+        bytes[..LEN].copy_from_slice(&data);
+        Frame {
+            id: id.into(),
+            remote: false,
+            len: LEN as u8,
+            data: bytes,
+        }
+    }
+
     /// A data frame of exactly 8 bytes on an 11-bit identifier, the shape of SDO and LSS.
     pub fn of_eight(id: StandardId, data: [u8; 8]) -> Frame {
         Frame {
@@ -90,5 +103,35 @@ impl Frame {
             id: id.into(),
             ..self
         }
+    }
+}
+
+#[cfg(test)]
+pub(crate) use tests::any_frame;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    pub(crate) fn any_frame() -> impl Strategy<Value = Frame> {
+        let id = prop_oneof![
+            (0..=0x7FFu16).prop_map(|raw| Id::standard(raw).unwrap()),
+            (0..=0x1FFF_FFFFu32).prop_map(|raw| Id::extended(raw).unwrap()),
+        ];
+        let data = proptest::collection::vec(any::<u8>(), 0..=8);
+        prop_oneof![
+            4 => (id.clone(), data).prop_map(|(id, data)| Frame::data(id, &data).unwrap()),
+            1 => (id, 0..=8u8).prop_map(|(id, len)| Frame::remote(id, len).unwrap()),
+        ]
+    }
+
+    #[test]
+    fn a_classic_frame_has_at_most_eight_bytes() {
+        let id = StandardId::MAX;
+        assert_eq!(Frame::data(id, &[0; 9]), None);
+        assert_eq!(Frame::remote(id, 9), None);
+        assert_eq!(Frame::data(id, &[1, 2]), Some(Frame::of(id, [1, 2])));
+        assert_eq!(Frame::data(id, &[7; 8]), Some(Frame::of_eight(id, [7; 8])));
     }
 }

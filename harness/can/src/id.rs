@@ -28,6 +28,9 @@ impl StandardId {
 pub struct ExtendedId(u32);
 
 impl ExtendedId {
+    /// The highest 29-bit identifier.
+    pub const MAX: ExtendedId = ExtendedId(0x1FFF_FFFF);
+
     /// The identifier `raw`, unless it needs more than 29 bits.
     pub const fn new(raw: u32) -> Option<ExtendedId> {
         if raw <= 0x1FFF_FFFF {
@@ -86,5 +89,11 @@ impl Id {
 impl From<StandardId> for Id {
     fn from(id: StandardId) -> Id {
         Id::Standard(id)
+    }
+}
+
+impl From<ExtendedId> for Id {
+    fn from(id: ExtendedId) -> Id {
+        Id::Extended(id)
     }
 }
