@@ -1,0 +1,173 @@
+//! The object dictionary.
+
+use std::collections::BTreeMap;
+
+use crate::{DataType, Default, Number};
+
+/// The objects a device claims to have, in index order.
+#[derive(Debug, Clone, PartialEq, std::default::Default)]
+pub struct Dictionary {
+    objects: BTreeMap<u16, Object>,
+}
+
+impl Dictionary {
+    /// The object at `index`.
+    pub fn object(&self, index: u16) -> Option<&Object> {
+        self.objects.get(&index)
+    }
+
+    /// The entry at `index` and sub-index `sub`; a variable is at sub-index 0.
+    pub fn entry(&self, index: u16, sub: u8) -> Option<&Entry> {
+        self.object(index)?.entries.get(&sub)
+    }
+
+    /// Every object, in index order.
+    pub fn objects(&self) -> impl Iterator<Item = &Object> {
+        self.objects.values()
+    }
+
+    /// Every entry with its index and sub-index, in that order.
+    pub fn entries(&self) -> impl Iterator<Item = (u16, u8, &Entry)> {
+        self.objects().flat_map(|object| {
+            object
+                .entries
+                .iter()
+                .map(|(sub, entry)| (object.index, *sub, entry))
+        })
+    }
+}
+
+impl FromIterator<Object> for Dictionary {
+    /// Of two objects with one index the later stays.
+    fn from_iter<I: IntoIterator<Item = Object>>(objects: I) -> Dictionary {
+        Dictionary {
+            objects: objects
+                .into_iter()
+                .map(|object| (object.index, object))
+                .collect(),
+        }
+    }
+}
+
+/// One index of the dictionary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Its index.
+    pub index: u16,
+    /// Its name as the file has it.
+    pub name: String,
+    /// Its object code.
+    pub kind: ObjectKind,
+    /// Its entries by sub-index; a variable or domain has one, at 0.
+    pub entries: BTreeMap<u8, Entry>,
+    /// The line of its section, from 1.
+    pub line: usize,
+}
+
+/// The object code (CiA 301).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ObjectKind {
+    /// 0, an object without data.
+    Null,
+    /// 2, a large block of data.
+    Domain,
+    /// 5, the definition of a simple type.
+    DefType,
+    /// 6, the definition of a record type.
+    DefStruct,
+    /// 7, a single value.
+    Variable,
+    /// 8, entries of one type.
+    Array,
+    /// 9, entries of several types.
+    Record,
+    /// Any other code.
+    Unknown(u8),
+}
+
+impl ObjectKind {
+    /// The kind whose object code is `code`.
+    pub const fn from_code(code: u8) -> ObjectKind {
+        match code {
+            0 => ObjectKind::Null,
+            2 => ObjectKind::Domain,
+            5 => ObjectKind::DefType,
+            6 => ObjectKind::DefStruct,
+            7 => ObjectKind::Variable,
+            8 => ObjectKind::Array,
+            9 => ObjectKind::Record,
+            other => ObjectKind::Unknown(other),
+        }
+    }
+}
+
+/// One sub-index of an object: a value that can be read or written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// Its name as the file has it.
+    pub name: String,
+    /// Its type.
+    pub data_type: DataType,
+    /// What may be done with it.
+    pub access: Access,
+    /// The lowest value it takes, if one is given.
+    pub low_limit: Option<Number>,
+    /// The highest value it takes, if one is given.
+    pub high_limit: Option<Number>,
+    /// Its value after a reset to defaults, if one is given.
+    pub default: Option<Default>,
+    /// Whether it may be mapped into a PDO.
+    pub pdo_mapping: bool,
+    /// The line of its section, from 1.
+    pub line: usize,
+}
+
+impl Entry {
+    /// The default as an SDO carries it for node `node`: little-endian in the size of the data type, or the bytes of
+    /// the string. `None` if no default is given, or if it does not fit the type.
+    pub fn default_bytes(&self, node: u8) -> Option<Vec<u8>> {
+        self.default.as_ref()?.bytes(self.data_type, node)
+    }
+}
+
+/// What may be done with an entry, as CiA 306 writes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Access {
+    /// `ro`
+    ReadOnly,
+    /// `wo`
+    WriteOnly,
+    /// `rw`
+    ReadWrite,
+    /// `rwr`: read and write, and a PDO may only read it (the device sends it).
+    ReadWriteOnRead,
+    /// `rww`: read and write, and a PDO may only write it (the device receives it).
+    ReadWriteOnWrite,
+    /// `const`: read only, and the value never changes.
+    Constant,
+}
+
+impl Access {
+    /// The access that `word` names, in any case.
+    pub fn from_word(word: &str) -> Option<Access> {
+        Some(match word.to_ascii_lowercase().as_str() {
+            "ro" => Access::ReadOnly,
+            "wo" => Access::WriteOnly,
+            "rw" => Access::ReadWrite,
+            "rwr" => Access::ReadWriteOnRead,
+            "rww" => Access::ReadWriteOnWrite,
+            "const" => Access::Constant,
+            _ => return None,
+        })
+    }
+
+    /// Whether an SDO may read it.
+    pub const fn readable(self) -> bool {
+        !matches!(self, Access::WriteOnly)
+    }
+
+    /// Whether an SDO may write it.
+    pub const fn writable(self) -> bool {
+        !matches!(self, Access::ReadOnly | Access::Constant)
+    }
+}
