@@ -1,0 +1,14 @@
+//! CANopen: the services of CiA 301 and CiA 305, as frames.
+
+mod abort_code;
+pub mod connection_set;
+mod data_frame;
+mod multiplexer;
+pub mod nmt;
+mod node_id;
+pub mod sdo;
+
+pub use abort_code::AbortCode;
+pub use connection_set::{PdoNumber, Service, cob_id, identify};
+pub use multiplexer::Multiplexer;
+pub use node_id::NodeId;
