@@ -1,5 +1,7 @@
 //! What travels on a port, and how a port is set.
 
+use std::time::Duration;
+
 use fieldproof_can::Frame;
 
 /// One character on a serial line.
@@ -90,6 +92,41 @@ impl SerialSettings {
         };
         1 + 8 + parity + stop
     }
+
+    /// One bit on the line, to the nearest nanosecond. A baud rate of 0 counts as 1.
+    pub const fn bit_time(self) -> Duration {
+        Duration::from_nanos(bits_in_nanos(1, self.baud))
+    }
+
+    /// One character on the line, to the nearest nanosecond. A baud rate of 0 counts as 1.
+    pub const fn character_time(self) -> Duration {
+        Duration::from_nanos(bits_in_nanos(self.bits_per_character() as u64, self.baud))
+    }
+
+    /// The longest silence between two characters of one Modbus RTU frame, t1.5: one and a half characters, or 750 us
+    /// above 19200 baud.
+    pub const fn silence_1_5(self) -> Duration {
+        self.silence(3, Duration::from_micros(750))
+    }
+
+    /// The least silence between two Modbus RTU frames, t3.5: three and a half characters, or 1.75 ms above 19200 baud.
+    pub const fn silence_3_5(self) -> Duration {
+        self.silence(7, Duration::from_micros(1750))
+    }
+
+    const fn silence(self, half_characters: u64, above_19200: Duration) -> Duration {
+        if self.baud > 19_200 {
+            return above_19200;
+        }
+        let half_bits = half_characters * self.bits_per_character() as u64;
+        Duration::from_nanos(bits_in_nanos(half_bits, 2 * at_least_one(self.baud)))
+    }
+}
+
+/// How many nanoseconds `bits` bits take at `rate` bits a second, to the nearest; a rate of 0 counts as 1.
+pub(crate) const fn bits_in_nanos(bits: u64, rate: u32) -> u64 {
+    let rate = at_least_one(rate) as u64;
+    (bits.saturating_mul(1_000_000_000).saturating_add(rate / 2)) / rate
 }
 
 /// How a participant or the tester is set on a port right now. Two that are set differently do not understand each
@@ -105,4 +142,50 @@ pub enum Line {
     },
     /// On a serial line.
     Serial(SerialSettings),
+}
+
+const fn at_least_one(rate: u32) -> u32 {
+    if rate == 0 { 1 } else { rate }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn settings(baud: u32, parity: Parity, stop_bits: StopBits) -> SerialSettings {
+        SerialSettings {
+            baud,
+            parity,
+            stop_bits,
+        }
+    }
+
+    #[test]
+    fn a_character_takes_its_bits() {
+        // 1 start + 8 data + 1 parity + 1 stop = 11 bits; 11 / 9600 s = 1.145833.. ms.
+        let even = settings(9_600, Parity::Even, StopBits::One);
+        assert_eq!(even.character_time(), Duration::from_nanos(1_145_833));
+        assert_eq!(even.bit_time(), Duration::from_nanos(104_167));
+        // 1 + 8 + 1 = 10 bits at 10 kBd: 1 ms.
+        let none = settings(10_000, Parity::None, StopBits::One);
+        assert_eq!(none.character_time(), Duration::from_millis(1));
+    }
+
+    #[test]
+    fn the_silences_are_characters_up_to_19200_baud_and_fixed_above() {
+        // 11 bits at 19200 Bd: 572.9166.. us a character; 1.5 of them 859.375 us, 3.5 of them 2.005208.. ms.
+        let slow = settings(19_200, Parity::Even, StopBits::One);
+        assert_eq!(slow.silence_1_5(), Duration::from_nanos(859_375));
+        assert_eq!(slow.silence_3_5(), Duration::from_nanos(2_005_208));
+        let fast = settings(19_201, Parity::Even, StopBits::One);
+        assert_eq!(fast.silence_1_5(), Duration::from_micros(750));
+        assert_eq!(fast.silence_3_5(), Duration::from_micros(1_750));
+    }
+
+    #[test]
+    fn a_rate_of_zero_is_slow_and_does_not_panic() {
+        let stopped = settings(0, Parity::None, StopBits::Two);
+        assert_eq!(stopped.character_time(), Duration::from_secs(11));
+        assert!(stopped.silence_3_5() > Duration::from_secs(11));
+    }
 }

@@ -25,6 +25,11 @@ impl Instant {
         self.0
     }
 
+    /// The instant `nanoseconds` later, or [`Instant::NEVER`]: addition without the detour over [`Duration`].
+    pub(crate) const fn after_nanos(self, nanoseconds: u64) -> Instant {
+        Instant(self.0.saturating_add(nanoseconds))
+    }
+
     /// The time from `earlier` to this instant; zero if `earlier` is later.
     pub const fn since(self, earlier: Instant) -> Duration {
         Duration::from_nanos(self.0.saturating_sub(earlier.0))
