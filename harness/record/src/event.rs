@@ -1,7 +1,9 @@
 //! The events of a lane.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::hex::{FrameLine, HexBytes};
 use crate::{Verdict, VerdictCounts};
 
 /// Takes events as they happen.
@@ -17,7 +19,7 @@ impl Sink for Vec<Event> {
 }
 
 /// Something that happened.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum Event {
     /// The lane was opened; always the first line of a journal.
@@ -49,7 +51,7 @@ pub enum Event {
 }
 
 /// A port of the lane, as the link describes it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct PortInfo {
     /// `can`, `serial`.
     pub name: String,
@@ -64,7 +66,7 @@ pub struct PortInfo {
 }
 
 /// See [`Event::LaneStarted`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LaneStarted {
     /// The journal's format version.
     pub format: u32,
@@ -83,7 +85,7 @@ pub struct LaneStarted {
 }
 
 /// See [`Event::SuiteStarted`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SuiteStarted {
     /// Its id.
     pub suite: String,
@@ -94,7 +96,7 @@ pub struct SuiteStarted {
 }
 
 /// A citation.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Cite {
     /// The document.
     pub document: String,
@@ -103,7 +105,7 @@ pub struct Cite {
 }
 
 /// See [`Event::CaseStarted`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CaseStarted {
     /// `suite/case[key=value]`.
     pub id: String,
@@ -128,7 +130,7 @@ pub struct CaseStarted {
 }
 
 /// A place in a suite file, with the text of its line, so that a report needs no suite at hand.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Place {
     /// The file.
     pub path: String,
@@ -143,7 +145,7 @@ pub struct Place {
 }
 
 /// See [`Event::StepStarted`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct StepStarted {
     /// Its place in the case, from 0, control first.
     pub step: u32,
@@ -154,7 +156,7 @@ pub struct StepStarted {
 }
 
 /// From where to where.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Direction {
     /// By the tester.
@@ -165,8 +167,10 @@ pub enum Direction {
     Companion,
 }
 
-/// See [`Event::Frame`]. The bytes at and after `len` are zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// See [`Event::Frame`]. The bytes at and after `len` are zero. In the journal `data` is hexadecimal, and only a remote
+/// frame gives its length by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(into = "FrameLine", try_from = "FrameLine")]
 pub struct FrameEvent {
     /// The end of its last bit.
     pub at_ns: u64,
@@ -180,14 +184,14 @@ pub struct FrameEvent {
     pub extended: bool,
     /// Whether it is a remote frame.
     pub remote: bool,
-    /// The data length code.
+    /// The data length code, `0..=8`.
     pub len: u8,
     /// The data.
     pub data: [u8; 8],
 }
 
 /// See [`Event::Serial`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SerialEvent {
     /// The end of its last character.
     pub at_ns: u64,
@@ -197,14 +201,16 @@ pub struct SerialEvent {
     pub port: u8,
     /// From where to where.
     pub direction: Direction,
-    /// The bytes.
+    /// The bytes; hexadecimal in the journal.
+    #[serde(with = "HexBytes")]
+    #[schemars(with = "HexBytes")]
     pub bytes: Vec<u8>,
     /// Whether a character was spoilt (parity, framing).
     pub spoilt: bool,
 }
 
 /// See [`Event::Stimulus`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct StimulusEvent {
     /// When.
     pub at_ns: u64,
@@ -213,7 +219,7 @@ pub struct StimulusEvent {
 }
 
 /// Limits in nanoseconds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Limits {
     /// Not below, if limited.
     pub min_ns: Option<u64>,
@@ -222,7 +228,7 @@ pub struct Limits {
 }
 
 /// See [`Event::Measurement`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Measurement {
     /// When it was complete.
     pub at_ns: u64,
@@ -239,7 +245,7 @@ pub struct Measurement {
 }
 
 /// See [`Event::Observation`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Observation {
     /// When.
     pub at_ns: u64,
@@ -250,7 +256,7 @@ pub struct Observation {
 }
 
 /// See [`Event::Note`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Note {
     /// When.
     pub at_ns: u64,
@@ -259,7 +265,7 @@ pub struct Note {
 }
 
 /// Something that kept a case from passing.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
     /// What it amounts to: fail, deviation, inconclusive or error.
     pub verdict: Verdict,
@@ -278,7 +284,7 @@ pub struct Failure {
 }
 
 /// A line of the frames around a failure.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ExcerptLine {
     /// When.
     pub at_ns: u64,
@@ -295,7 +301,7 @@ pub struct ExcerptLine {
 }
 
 /// See [`Event::CaseFinished`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CaseFinished {
     /// Its id.
     pub id: String,
@@ -314,7 +320,7 @@ pub struct CaseFinished {
 }
 
 /// See [`Event::SuiteFinished`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SuiteFinished {
     /// Its id.
     pub suite: String,
@@ -325,7 +331,7 @@ pub struct SuiteFinished {
 }
 
 /// See [`Event::LaneFinished`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LaneFinished {
     /// When.
     pub at_ns: u64,

@@ -4,6 +4,7 @@
 //! [`FORMAT`]; read back they give the same reports. Instants are nanoseconds since the lane was opened.
 
 mod event;
+mod hex;
 mod journal;
 mod verdict;
 
@@ -12,8 +13,13 @@ pub use event::{
     LaneFinished, LaneStarted, Limits, Measurement, Note, Observation, Place, PortInfo,
     SerialEvent, Sink, StepStarted, StimulusEvent, SuiteFinished, SuiteStarted,
 };
-pub use journal::{JournalError, read_journal, write_event};
+pub use journal::{Journal, JournalError, read_journal, write_event};
 pub use verdict::{Verdict, VerdictCounts};
+
+/// The JSON Schema of one line of the journal.
+pub fn journal_schema() -> serde_json::Value {
+    schemars::schema_for!(Event).to_value()
+}
 
 /// The version of the journal format that this crate writes.
 pub const FORMAT: u32 = 1;

@@ -2,11 +2,14 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The outcome of a case, best first. ISO/IEC 9646 has pass, fail and inconclusive; the rest keeps apart what is not
 /// the device's doing, and what its manual says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The device does what is asked.
@@ -54,7 +57,7 @@ impl fmt::Display for Verdict {
 }
 
 /// How many cases had which verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct VerdictCounts {
     /// Passed.
     pub pass: u32,
@@ -73,13 +76,15 @@ pub struct VerdictCounts {
 impl VerdictCounts {
     /// Counts one more.
     pub fn add(&mut self, verdict: Verdict) {
-        *self.of_mut(verdict) += 1;
+        let count = self.of_mut(verdict);
+        *count = count.saturating_add(1);
     }
 
     /// Adds all of `other`.
     pub fn merge(&mut self, other: VerdictCounts) {
         for verdict in Verdict::ALL {
-            *self.of_mut(verdict) += other.of(verdict);
+            let count = self.of_mut(verdict);
+            *count = count.saturating_add(other.of(verdict));
         }
     }
 
@@ -97,7 +102,9 @@ impl VerdictCounts {
 
     /// How many in all.
     pub fn total(&self) -> u32 {
-        Verdict::ALL.iter().map(|verdict| self.of(*verdict)).sum()
+        Verdict::ALL.iter().fold(0, |total: u32, verdict| {
+            total.saturating_add(self.of(*verdict))
+        })
     }
 
     fn of_mut(&mut self, verdict: Verdict) -> &mut u32 {
