@@ -18,20 +18,19 @@ pub(super) fn read(sections: &[Section<'_>], findings: &mut Vec<Finding>) -> Dic
             }
         }
     }
+    let mut lines: BTreeMap<(u16, u8), usize> = BTreeMap::new();
     for section in sections {
         if let Some(Place::Entry(index, sub)) = place(section.name) {
+            let first = *lines.entry((index, sub)).or_insert(section.line);
+            if first != section.line {
+                findings.push(repeated(section, first));
+                continue;
+            }
             let object = objects
                 .entry(index)
                 .or_insert_with(|| orphan(index, section, findings));
-            match object.entries.get(&sub) {
-                Some(first) if first.line != object.line => {
-                    findings.push(repeated(section, first.line));
-                }
-                // An entry of its own says more than what the object's section implies.
-                _ => {
-                    object.entries.insert(sub, entry(section, findings));
-                }
-            }
+            // An entry of its own says more than what the object's section implies.
+            object.entries.insert(sub, entry(section, findings));
         }
     }
     objects.into_values().collect()
