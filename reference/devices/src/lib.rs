@@ -1,1 +1,32 @@
-//! TODO
+//! Reference devices: slaves that conform, of the kinds whose manuals the suites were written from.
+//!
+//! They are [`Participant`]s (sans-IO) with codecs of their own: a slave that shared the harness's codec would share its
+//! mistakes. What a device does beside the plain standard is said in one [`Behaviour`]: its documented deviations, its
+//! legal [`Variant`]s and its [`Fault`]s, each of which departs from one clause and from nothing else.
+
+pub mod canopen;
+pub mod catalogue;
+pub mod huacheng_ssts1;
+pub mod inverter;
+mod kinco_servo;
+pub mod liaomiao_encoder;
+pub mod modbus;
+#[cfg(test)]
+mod script;
+
+pub use catalogue::{
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
+};
+
+#[cfg(doc)]
+use fieldproof_link::Participant;
+
+/// Every kind of reference device, by name.
+pub fn kinds() -> &'static [DeviceKind] {
+    &[kinco_servo::KIND]
+}
+
+/// The kind called `name`, if there is one.
+pub fn kind(name: &str) -> Option<&'static DeviceKind> {
+    kinds().iter().find(|kind| kind.name == name)
+}

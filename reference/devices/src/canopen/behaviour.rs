@@ -1,0 +1,112 @@
+//! How a slave behaves where devices differ.
+
+use std::ops::Range;
+
+/// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
+#[derive(Debug, Clone)]
+pub struct Behaviour {
+    /// Bytes 4 to 7 of a download response repeat the data. A documented deviation of one device; reserved otherwise.
+    pub echo_download_data: bool,
+    /// Microseconds between a request and its answer.
+    pub response_us: Range<u64>,
+    /// An event-driven TPDO is sent once on entering Operational; it may also wait for its first event.
+    pub tpdo_on_start: bool,
+    /// A remote frame is answered with the TPDO it names, where bit 30 of the COB-ID allows it; a device may stay
+    /// silent.
+    pub remote_frames_answered: bool,
+    /// A heartbeat is sent at once when 1017h is written; it may also wait for its first period.
+    pub heartbeat_on_write: bool,
+
+    /// The boot-up message is sent.
+    pub boot_up: bool,
+    /// The state byte of heartbeat and guarding.
+    pub state_codes: StateCodes,
+    /// The abort code for a sub-index that does not exist.
+    pub abort_no_sub_index: u32,
+    /// What bytes 1 to 3 of an abort name.
+    pub abort_multiplexer: AbortMultiplexer,
+    /// The toggle bit alternates in the answers of a segmented upload.
+    pub toggle_alternates: bool,
+    /// How many bytes too many an expedited upload response says it carries.
+    pub expedited_surplus: u8,
+    /// An upload after a download gives the value from before it.
+    pub upload_lags_download: bool,
+    /// A download is confirmed.
+    pub download_confirmed: bool,
+    /// A mapping entry travels in an SDO with its most significant byte first.
+    pub mapping_entry_big_endian: bool,
+    /// The SDO server answers in Stopped.
+    pub sdo_in_stopped: bool,
+    /// PDOs are sent and taken in Pre-operational.
+    pub pdo_in_pre_operational: bool,
+    /// A synchronous TPDO leaves one SYNC after the one it was due with.
+    pub tpdo_one_sync_late: bool,
+    /// When a new node-ID takes effect.
+    pub node_activation: NodeActivation,
+    /// The command specifier of the answer to inquire revision number.
+    pub lss_revision_specifier: u8,
+}
+
+/// What bytes 1 to 3 of an abort name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AbortMultiplexer {
+    /// The object that was asked for.
+    OfRequest,
+    /// The object at the next index.
+    NextIndex,
+}
+
+/// When a new node-ID takes effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NodeActivation {
+    /// At the next reset.
+    AtReset,
+    /// With the answer to the request that set it.
+    AtOnce,
+}
+
+/// The state byte of heartbeat and guarding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StateCodes {
+    /// Stopped: 04h.
+    pub stopped: u8,
+    /// Operational: 05h.
+    pub operational: u8,
+    /// Pre-operational: 7Fh.
+    pub pre_operational: u8,
+}
+
+impl StateCodes {
+    /// As CiA 301 has them.
+    pub const STANDARD: StateCodes = StateCodes {
+        stopped: 0x04,
+        operational: 0x05,
+        pre_operational: 0x7F,
+    };
+}
+
+impl Default for Behaviour {
+    fn default() -> Behaviour {
+        Behaviour {
+            echo_download_data: false,
+            response_us: 150..350,
+            tpdo_on_start: true,
+            remote_frames_answered: true,
+            heartbeat_on_write: false,
+            boot_up: true,
+            state_codes: StateCodes::STANDARD,
+            abort_no_sub_index: 0x0609_0011,
+            abort_multiplexer: AbortMultiplexer::OfRequest,
+            toggle_alternates: true,
+            expedited_surplus: 0,
+            upload_lags_download: false,
+            download_confirmed: true,
+            mapping_entry_big_endian: false,
+            sdo_in_stopped: false,
+            pdo_in_pre_operational: false,
+            tpdo_one_sync_late: false,
+            node_activation: NodeActivation::AtReset,
+            lss_revision_specifier: 0x5C,
+        }
+    }
+}

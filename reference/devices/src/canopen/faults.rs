@@ -1,0 +1,122 @@
+//! The faults that a CANopen side can be given, each one departure from one clause.
+
+use super::{AbortMultiplexer, NodeActivation, StateCodes};
+use crate::Fault;
+
+pub(crate) const ABORT_CODE_WRONG: Fault = Fault {
+    name: "abort-code-wrong",
+    breaks: "CiA 301: SDO abort transfer, abort code 06090011h",
+    words: "says that the object does not exist (06020000h) where only the sub-index does not",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.abort_no_sub_index = 0x0602_0000,
+};
+
+pub(crate) const ABORT_NAMES_ANOTHER_OBJECT: Fault = Fault {
+    name: "abort-names-another-object",
+    breaks: "CiA 301: SDO abort transfer, multiplexer",
+    words: "names the next index in bytes 1 and 2 of an abort",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.abort_multiplexer = AbortMultiplexer::NextIndex,
+};
+
+pub(crate) const BOOT_UP_MISSING: Fault = Fault {
+    name: "boot-up-missing",
+    breaks: "CiA 301: boot-up protocol",
+    words: "enters Pre-operational without its boot-up message",
+    caught_by: "boot-up",
+    apply: |behaviour| behaviour.canopen.boot_up = false,
+};
+
+pub(crate) const HEARTBEAT_STATE_WRONG: Fault = Fault {
+    name: "heartbeat-state-wrong",
+    breaks: "CiA 301: heartbeat protocol, state of the producer",
+    words: "gives its state in the codes of the NMT commands: 80h operational, 81h pre-operational, 02h stopped",
+    caught_by: "error-control",
+    apply: |behaviour| {
+        behaviour.canopen.state_codes = StateCodes {
+            stopped: 0x02,
+            operational: 0x80,
+            pre_operational: 0x81,
+        };
+    },
+};
+
+pub(crate) const TPDO_ONE_SYNC_LATE: Fault = Fault {
+    name: "tpdo-one-sync-late",
+    breaks: "CiA 301: PDO transmission type 1 to 240",
+    words: "sends a synchronous TPDO one SYNC after the one it was due with",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.tpdo_one_sync_late = true,
+};
+
+pub(crate) const LSS_REVISION_ANSWERS_5B: Fault = Fault {
+    name: "lss-revision-answers-5b",
+    breaks: "CiA 305: inquire identity revision number protocol, command specifier",
+    words: "answers the inquiry for the revision number (5Ch) with 5Bh",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_revision_specifier = 0x5B,
+};
+
+pub(crate) const TOGGLE_NOT_ALTERNATED: Fault = Fault {
+    name: "toggle-not-alternated",
+    breaks: "CiA 301: SDO upload segment, toggle bit",
+    words: "leaves the toggle bit at 0 in every segment it sends",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.toggle_alternates = false,
+};
+
+pub(crate) const EXPEDITED_SIZE_WRONG: Fault = Fault {
+    name: "expedited-size-wrong",
+    breaks: "CiA 301: SDO upload initiate, number of bytes without data",
+    words: "says that an expedited value has one byte more than it has",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.expedited_surplus = 1,
+};
+
+pub(crate) const STALE_VALUE_AFTER_WRITE: Fault = Fault {
+    name: "stale-value-after-write",
+    breaks: "CiA 301: SDO download",
+    words: "confirms a download, and then reads the value from before it",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.upload_lags_download = true,
+};
+
+pub(crate) const SDO_ANSWERED_IN_STOPPED: Fault = Fault {
+    name: "sdo-answered-in-stopped",
+    breaks: "CiA 301: NMT states and communication objects",
+    words: "answers SDO requests while it is stopped",
+    caught_by: "nmt",
+    apply: |behaviour| behaviour.canopen.sdo_in_stopped = true,
+};
+
+pub(crate) const PDO_IN_PRE_OPERATIONAL: Fault = Fault {
+    name: "pdo-in-pre-operational",
+    breaks: "CiA 301: NMT states and communication objects",
+    words: "sends and takes PDOs before it is started",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo_in_pre_operational = true,
+};
+
+pub(crate) const NODE_ID_ACTIVE_BEFORE_RESET: Fault = Fault {
+    name: "node-id-active-before-reset",
+    breaks: "CiA 305: configure node-ID protocol; active after a reset",
+    words: "takes a new node-ID with the answer to the request, not at the next reset",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.node_activation = NodeActivation::AtOnce,
+};
+
+pub(crate) const DOWNLOAD_ACK_MISSING: Fault = Fault {
+    name: "download-ack-missing",
+    breaks: "CiA 301: SDO download initiate, response",
+    words: "takes a value and does not confirm it",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.download_confirmed = false,
+};
+
+pub(crate) const MAPPING_ENTRY_BYTE_ORDER: Fault = Fault {
+    name: "mapping-entry-byte-order",
+    breaks: "CiA 301: transfer syntax of UNSIGNED32, least significant byte first",
+    words: "sends and takes the entries of a PDO mapping with the most significant byte first",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.mapping_entry_big_endian = true,
+};

@@ -1,0 +1,32 @@
+//! A CANopen slave, driven from outside: object dictionary, SDO server, NMT, error control, PDO, SYNC, EMCY, LSS.
+//!
+//! A device gives it a [`Profile`] (what it can do), an [`Application`] (what its objects mean) and a [`Behaviour`].
+
+mod abort;
+mod address;
+mod behaviour;
+mod emergency;
+mod error_control;
+pub(crate) mod faults;
+mod lss;
+mod memory;
+mod nmt;
+mod objects;
+mod pdo;
+mod pdo_rules;
+mod profile;
+mod queue;
+mod sdo;
+mod slave;
+mod sync;
+mod tpdo;
+pub(crate) mod variants;
+
+pub(crate) use abort::Abort;
+pub(crate) use address::Address;
+pub use behaviour::{AbortMultiplexer, Behaviour, NodeActivation, StateCodes};
+pub(crate) use emergency::HARDWARE;
+use nmt::State;
+pub(crate) use objects::Objects;
+pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
+pub(crate) use slave::{Factory, Slave};

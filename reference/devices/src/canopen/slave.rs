@@ -1,0 +1,502 @@
+//! The slave as a whole: what it holds, what arrives, when it wants to be woken, what a reset does.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::time::Duration;
+
+use fieldproof_can::{Frame, Id};
+use fieldproof_link::{Instant, Line, NotOffered, Outbox};
+
+use super::error_control::{self, ErrorControl};
+use super::lss::{self, LssState};
+use super::memory::{self, Memory};
+use super::nmt::Command;
+use super::objects::Objects;
+use super::pdo::{self, Rpdo};
+use super::pdo_rules::{self, Parameter};
+use super::queue::{Queue, Service, identifier};
+use super::sdo::Server;
+use super::sync::{self, Sync};
+use super::tpdo::{self, Tpdo};
+use super::{Abort, Address, Answer, Application, Behaviour, Profile, State};
+
+const ALL: std::ops::RangeInclusive<u16> = 0x0000..=0xFFFF;
+const COMMUNICATION: std::ops::RangeInclusive<u16> = 0x1000..=0x1FFF;
+const ERROR_HISTORY: u16 = 0x1003;
+const STORE: u16 = 0x1010;
+const RESTORE: u16 = 0x1011;
+/// The node-ID of a slave that has none yet.
+const NO_NODE: u8 = 255;
+
+/// A CANopen slave on one CAN port.
+#[derive(Debug)]
+pub(crate) struct Slave {
+    pub(crate) objects: Objects,
+    pub(super) profile: Profile,
+    pub(super) behaviour: Behaviour,
+    pub(super) state: State,
+    pub(super) lss: LssState,
+    pub(super) node: u8,
+    pub(super) pending_node: u8,
+    pub(super) pending_bit_rate: u32,
+    pub(super) memory: Memory,
+    pub(super) queue: Queue,
+    pub(super) sdo: Server,
+    pub(super) sync: Sync,
+    pub(super) error_control: ErrorControl,
+    pub(super) rpdos: Vec<Rpdo>,
+    pub(super) tpdos: Vec<Tpdo>,
+    bit_rate: u32,
+    powered: bool,
+    boot_at: Option<Instant>,
+    chance: fastrand::Rng,
+}
+
+/// What a slave is at the factory.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Factory {
+    pub(crate) node: u8,
+    pub(crate) bit_rate: u32,
+    pub(crate) seed: u64,
+}
+
+impl Slave {
+    /// A slave that is powered on when the lane is opened.
+    pub(crate) fn new(
+        profile: Profile,
+        behaviour: Behaviour,
+        factory: Factory,
+        application: &mut dyn Application,
+    ) -> Slave {
+        let memory = Memory {
+            values: BTreeMap::new(),
+            node: factory.node,
+            bit_rate: factory.bit_rate,
+        };
+        let mut slave = Slave {
+            objects: Objects::new(profile.dictionary),
+            profile,
+            behaviour,
+            state: State::Initialising,
+            lss: LssState::default(),
+            node: factory.node,
+            pending_node: factory.node,
+            pending_bit_rate: factory.bit_rate,
+            memory,
+            queue: Queue::default(),
+            sdo: Server::default(),
+            sync: Sync::default(),
+            error_control: ErrorControl::default(),
+            rpdos: Vec::new(),
+            tpdos: Vec::new(),
+            bit_rate: factory.bit_rate,
+            powered: false,
+            boot_at: None,
+            chance: fastrand::Rng::with_seed(factory.seed),
+        };
+        slave.power(Instant::START, true, application);
+        slave
+    }
+
+    /// How it is set on its port.
+    pub(crate) fn line(&self) -> Line {
+        if self.powered {
+            Line::Can {
+                bit_rate: self.bit_rate,
+            }
+        } else {
+            Line::Off
+        }
+    }
+
+    /// `frame` arrived.
+    pub(crate) fn receive(
+        &mut self,
+        now: Instant,
+        frame: &Frame,
+        application: &mut dyn Application,
+    ) {
+        let Id::Standard(id) = frame.id() else { return };
+        if !self.powered || self.boot_at.is_some() {
+            return;
+        }
+        let (raw, node) = (id.raw(), u16::from(self.node));
+        if raw == lss::REQUEST {
+            self.receive_lss(now, frame);
+        } else if self.state == State::Initialising {
+            // Without a node-ID there is LSS and nothing else.
+        } else if raw == 0x600 + node {
+            self.serve(now, frame, application);
+        } else if raw == 0 {
+            if let Some(command) = Command::of(frame, self.node) {
+                self.command(now, command, application);
+            }
+        } else if raw == 0x700 + node && frame.is_remote() {
+            self.guard(now);
+        } else if frame.is_remote() {
+            self.fetch_tpdo(now, raw);
+        } else if self.sync.identifier == Some(raw) {
+            self.synchronise(now, application);
+        } else {
+            self.receive_pdo(now, raw, frame, application);
+        }
+        self.notice_changes();
+    }
+
+    /// When it wants to be woken.
+    pub(crate) fn wake_at(&self) -> Option<Instant> {
+        if !self.powered {
+            return None;
+        }
+        let timers = [
+            self.queue.next(),
+            self.boot_at,
+            self.error_control.due(),
+            self.sync.next,
+            self.tpdos_due(),
+        ];
+        timers.into_iter().flatten().min()
+    }
+
+    /// The instant it asked for has come.
+    pub(crate) fn wake(
+        &mut self,
+        now: Instant,
+        port: usize,
+        application: &mut dyn Application,
+        out: &mut Outbox,
+    ) {
+        if !self.powered {
+            return;
+        }
+        if self.boot_at.is_some_and(|at| at <= now) {
+            self.boot(now);
+        }
+        self.wake_error_control(now);
+        self.produce_sync(now, application);
+        self.wake_tpdos(now);
+        self.queue.flush(now, port, out);
+    }
+
+    /// Sets what the device measures: `name` is an object such as `6063:00`.
+    ///
+    /// # Errors
+    /// [`NotOffered`]: there is no such object.
+    pub(crate) fn set_process_value(&mut self, name: &str, value: i64) -> Result<(), NotOffered> {
+        let address = Address::parse(name).ok_or(NotOffered)?;
+        self.objects.find(address).map_err(|_| NotOffered)?;
+        self.objects.set_number(address, value);
+        self.notice_changes();
+        Ok(())
+    }
+
+    /// Between a request and its answer.
+    pub(super) fn turnaround(&mut self) -> Duration {
+        Duration::from_micros(self.chance.u64(self.behaviour.response_us.clone()))
+    }
+
+    /// Power goes on or off.
+    pub(crate) fn power(&mut self, now: Instant, on: bool, application: &mut dyn Application) {
+        self.powered = on;
+        self.queue.clear();
+        if on {
+            self.reset_node(now, application);
+        } else {
+            self.boot_at = None;
+            self.state = State::Initialising;
+        }
+    }
+
+    fn command(&mut self, now: Instant, command: Command, application: &mut dyn Application) {
+        match command {
+            Command::Enter(state) => self.enter(now, state),
+            Command::ResetNode => self.reset_node(now, application),
+            Command::ResetCommunication => self.reset_communication(now),
+        }
+    }
+
+    fn enter(&mut self, now: Instant, state: State) {
+        if state == self.state {
+            return;
+        }
+        self.state = state;
+        self.queue
+            .retain(|service| state.permits(service, &self.behaviour));
+        if state.permits(Service::Pdo, &self.behaviour) {
+            self.start_tpdos(now);
+        }
+    }
+
+    /// Everything as after power-on: what is in non-volatile memory, else the defaults.
+    fn reset_node(&mut self, now: Instant, application: &mut dyn Application) {
+        self.node = self.memory.node;
+        self.pending_node = self.memory.node;
+        self.bit_rate = self.memory.bit_rate;
+        self.pending_bit_rate = self.memory.bit_rate;
+        self.objects.load(ALL, self.node, &self.memory.values);
+        application.reset(&mut self.objects);
+        self.initialise(now);
+    }
+
+    /// The communication part of it, with the node-ID that was configured.
+    pub(super) fn reset_communication(&mut self, now: Instant) {
+        self.node = self.pending_node;
+        self.objects
+            .load(COMMUNICATION, self.node, &self.memory.values);
+        self.initialise(now);
+    }
+
+    fn initialise(&mut self, now: Instant) {
+        self.show_configuration();
+        self.state = State::Initialising;
+        self.lss = LssState::Waiting;
+        self.queue.clear();
+        self.sdo = Server::default();
+        self.sync = Sync::default();
+        self.error_control = ErrorControl::default();
+        self.rpdos = pdo::rpdos(&self.objects);
+        self.tpdos = tpdo::tpdos(&self.objects);
+        self.boot_at = self.has_node().then(|| now + self.profile.boot_time);
+    }
+
+    fn boot(&mut self, now: Instant) {
+        self.boot_at = None;
+        if self.behaviour.boot_up
+            && let Some(frame) = Frame::data(identifier(0x700 + u16::from(self.node)), &[0])
+        {
+            self.queue.push(now, Service::BootUp, frame);
+        }
+        self.enter(now, State::PreOperational);
+        self.start_error_control(now);
+        self.reconfigure_sync(now);
+    }
+
+    pub(super) fn has_node(&self) -> bool {
+        self.node != NO_NODE
+    }
+
+    /// Puts the node-ID and the bit-rate code of non-volatile memory where the dictionary shows them.
+    pub(super) fn show_configuration(&mut self) {
+        if let Some(address) = self.profile.node_object {
+            self.objects
+                .set_number(address, i64::from(self.memory.node));
+        }
+        if let (Some(address), Some(lss)) = (self.profile.bit_rate_object, self.profile.lss) {
+            let code = lss
+                .bit_rates
+                .iter()
+                .position(|rate| *rate == self.memory.bit_rate);
+            if let Some(code) = code.and_then(|code| i64::try_from(code).ok()) {
+                self.objects.set_number(address, code);
+            }
+        }
+    }
+
+    /// The node-ID changes with no reset: what depends on it and has its default follows.
+    pub(super) fn take_node(&mut self, node: u8) {
+        self.objects.readdress(self.node, node);
+        self.node = node;
+        self.rpdos = pdo::rpdos(&self.objects);
+        self.tpdos = tpdo::tpdos(&self.objects);
+    }
+
+    /// A switch or a front panel sets the node-ID.
+    ///
+    /// # Errors
+    /// [`NotOffered`]: it is none.
+    pub(crate) fn set_node(&mut self, now: Instant, node: i64) -> Result<(), NotOffered> {
+        let node = u8::try_from(node)
+            .ok()
+            .filter(|node| (1..=127).contains(node));
+        let node = node.ok_or(NotOffered)?;
+        self.memory.node = node;
+        self.pending_node = node;
+        self.take_node(node);
+        self.show_configuration();
+        if self.state.permits(Service::Pdo, &self.behaviour) {
+            self.start_tpdos(now);
+        }
+        Ok(())
+    }
+
+    /// A switch or a front panel sets the bit rate, one of `rates`.
+    ///
+    /// # Errors
+    /// [`NotOffered`]: it is none of them.
+    pub(crate) fn set_bit_rate(&mut self, rate: i64, rates: &[u32]) -> Result<(), NotOffered> {
+        let rate = u32::try_from(rate).ok().filter(|rate| rates.contains(rate));
+        self.memory.bit_rate = rate.ok_or(NotOffered)?;
+        self.pending_bit_rate = self.memory.bit_rate;
+        self.bit_rate = self.memory.bit_rate;
+        self.show_configuration();
+        Ok(())
+    }
+
+    /// Writes `value` to the object at `slot`, for an SDO or a PDO; `false` if the application will say when it is done.
+    pub(super) fn write(
+        &mut self,
+        now: Instant,
+        address: Address,
+        slot: usize,
+        value: &[u8],
+        application: &mut dyn Application,
+    ) -> Result<bool, Abort> {
+        let object = self.objects.at(slot).ok_or(Abort::NO_OBJECT)?;
+        if !object.writable {
+            return Err(Abort::READ_ONLY);
+        }
+        object.takes(value)?;
+        if !self.permitted(address, value)? {
+            return Ok(true);
+        }
+        match application.writing(address, value) {
+            Answer::Now => {}
+            Answer::Refused(abort) => return Err(abort),
+            Answer::Later => return Ok(false),
+        }
+        self.objects.set(address, value);
+        application.written(address, &mut self.objects);
+        self.keep(address);
+        self.follow(now, address);
+        Ok(true)
+    }
+
+    /// Whether the value is to be stored as the others are; `false` if it was an order and is done.
+    fn permitted(&mut self, address: Address, value: &[u8]) -> Result<bool, Abort> {
+        let bytes = value.iter().take(4).rev();
+        let number = bytes.fold(0, |number, byte| number << 8 | u32::from(*byte));
+        let index = address.index();
+        if let Some(parameter) = Parameter::of(index) {
+            pdo_rules::check(&self.objects, &self.profile, parameter, address, value)?;
+        } else if address == sync::COB_ID {
+            sync::check(
+                &self.profile,
+                self.objects.number(address).unwrap_or(0),
+                number,
+            )?;
+        } else if index == ERROR_HISTORY {
+            if number != 0 {
+                return Err(Abort::INVALID_VALUE);
+            }
+            self.forget_errors();
+            return Ok(false);
+        } else if matches!(index, STORE | RESTORE) && address.sub() != 0 {
+            self.store_or_restore(address, value)?;
+            return Ok(false);
+        } else if Some(address) == self.profile.node_object {
+            if !(1..=127).contains(&number) {
+                return Err(Abort::INVALID_VALUE);
+            }
+        } else if Some(address) == self.profile.bit_rate_object {
+            let rates = self.profile.lss.map_or(&[][..], |lss| lss.bit_rates);
+            if number as usize >= rates.len() {
+                return Err(Abort::INVALID_VALUE);
+            }
+        }
+        Ok(true)
+    }
+
+    /// 1010h takes `save`, 1011h `load`; both only where bit 0 of the value says that they can.
+    fn store_or_restore(&mut self, address: Address, value: &[u8]) -> Result<(), Abort> {
+        let able = self.objects.number(address).unwrap_or(0) & 1 != 0;
+        let signature: &[u8] = if address.index() == STORE {
+            b"save"
+        } else {
+            b"load"
+        };
+        if !able || value != signature {
+            return Err(Abort::CANNOT_STORE);
+        }
+        let group = memory::group(address.sub());
+        self.memory
+            .values
+            .retain(|saved, _| !group.contains(&saved.index()));
+        if address.index() == STORE {
+            let differing = self.objects.differing(&group, self.node);
+            self.memory.values.extend(differing);
+        }
+        Ok(())
+    }
+
+    /// Saves what is saved when it is written.
+    fn keep(&mut self, address: Address) {
+        if !self.profile.saved_on_write.contains(&address.index()) {
+            return;
+        }
+        if let Some(object) = self.objects.get(address) {
+            self.memory.values.insert(address, object.value().to_vec());
+        }
+    }
+
+    /// What else a new value changes.
+    fn follow(&mut self, now: Instant, address: Address) {
+        let index = address.index();
+        if let Some(_parameter) = Parameter::of(index) {
+            if pdo_rules::is_transmit(index) {
+                self.reconfigure_tpdo(now, index);
+            } else {
+                self.rpdos = pdo::rpdos(&self.objects);
+            }
+        } else if address == sync::COB_ID || address == sync::CYCLE {
+            self.reconfigure_sync(now);
+        } else if address == error_control::PRODUCER_TIME {
+            self.reconfigure_heartbeat(now);
+        } else if address == error_control::GUARD_TIME || address == error_control::LIFE_TIME_FACTOR
+        {
+            self.reconfigure_guarding();
+        } else if Some(address) == self.profile.node_object {
+            let node = self.objects.number(address).unwrap_or(1);
+            self.memory.node = node.to_le_bytes()[0];
+            self.pending_node = self.memory.node;
+            self.activate_pending_node();
+        } else if Some(address) == self.profile.bit_rate_object {
+            let code = self.objects.number(address).unwrap_or(0) as usize;
+            let rate = self.profile.lss.and_then(|lss| lss.bit_rates.get(code));
+            self.memory.bit_rate = rate.copied().unwrap_or(self.memory.bit_rate);
+            self.pending_bit_rate = self.memory.bit_rate;
+        }
+    }
+
+    /// Sets a value from inside the device as if it had been written: what depends on it follows.
+    pub(crate) fn set_parameter(&mut self, now: Instant, address: Address, value: i64) {
+        self.objects.set_number(address, value);
+        self.follow(now, address);
+    }
+
+    /// Everything that a case could have left changed.
+    pub(crate) fn state(&self) -> BTreeMap<String, String> {
+        let mut state = BTreeMap::new();
+        for (address, object) in self.objects.iter() {
+            if object.writable && address.index() != ERROR_HISTORY {
+                state.insert(address.to_string(), hexadecimal(object.value()));
+            }
+        }
+        for (address, value) in &self.memory.values {
+            state.insert(format!("saved {address}"), hexadecimal(value));
+        }
+        let facts = [
+            ("power", if self.powered { "on" } else { "off" }.to_owned()),
+            ("nmt", self.state.name().to_owned()),
+            ("lss", self.lss.name().to_owned()),
+            ("sdo", self.sdo.name().to_owned()),
+            ("node", self.node.to_string()),
+            ("node pending", self.pending_node.to_string()),
+            ("node saved", self.memory.node.to_string()),
+            ("bit-rate", self.bit_rate.to_string()),
+            ("bit-rate pending", self.pending_bit_rate.to_string()),
+            ("bit-rate saved", self.memory.bit_rate.to_string()),
+        ];
+        state.extend(facts.map(|(name, value)| (name.to_owned(), value)));
+        state
+    }
+}
+
+/// As a number is written: the most significant byte first.
+fn hexadecimal(value: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * value.len());
+    for byte in value.iter().rev() {
+        // Writing to a string does not fail.
+        let _ = write!(text, "{byte:02X}");
+    }
+    text
+}

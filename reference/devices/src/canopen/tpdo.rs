@@ -1,0 +1,239 @@
+//! The PDOs that are sent: by SYNC, by event with inhibit time, by event timer, by remote frame.
+
+use fieldproof_can::Frame;
+use fieldproof_link::Instant;
+
+use super::objects::Objects;
+use super::pdo::{Communication, Field, MOST_PDOS, TPDO_COMMUNICATION, TPDO_MAPPING, fields};
+use super::queue::{Service, identifier};
+use super::{Slave, TransmitEvent};
+
+/// What a PDO carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Payload {
+    len: usize,
+    bytes: [u8; 8],
+}
+
+/// A PDO that is sent.
+#[derive(Debug)]
+pub(super) struct Tpdo {
+    pub(super) index: u16,
+    communication: Communication,
+    fields: Vec<Field>,
+    /// What it carried last, or when it was started.
+    sampled: Payload,
+    /// It is to be sent: as soon as the inhibit time allows, or with the next SYNC.
+    event: bool,
+    /// SYNCs since it was last sent.
+    syncs: u8,
+    /// It was due with the SYNC before.
+    owed: bool,
+    last: Option<Instant>,
+    timer: Option<Instant>,
+}
+
+impl Tpdo {
+    fn read(objects: &Objects, number: u16) -> Option<Tpdo> {
+        let index = TPDO_COMMUNICATION + number;
+        Some(Tpdo {
+            index,
+            communication: Communication::read(objects, index)?,
+            fields: fields(objects, TPDO_MAPPING + number),
+            sampled: Payload::default(),
+            event: false,
+            syncs: 0,
+            owed: false,
+            last: None,
+            timer: None,
+        })
+    }
+
+    fn payload(&self, objects: &Objects) -> Payload {
+        let mut payload = Payload::default();
+        for field in &self.fields {
+            let value = objects
+                .at(field.slot)
+                .map_or(&[][..], |object| object.value());
+            let end = payload.len + field.size;
+            let Some(place) = payload.bytes.get_mut(payload.len..end) else {
+                break;
+            };
+            place
+                .iter_mut()
+                .zip(value)
+                .for_each(|(to, from)| *to = *from);
+            payload.len = end;
+        }
+        payload
+    }
+
+    /// When it leaves next, if nothing happens before.
+    fn due(&self) -> Option<Instant> {
+        if !self.communication.valid || !self.communication.event_driven() {
+            return None;
+        }
+        let event = self.event.then(|| {
+            self.last
+                .map_or(Instant::START, |last| last + self.communication.inhibit)
+        });
+        let timer = self.timer.map(|timer| match self.last {
+            Some(last) => timer.max(last + self.communication.inhibit),
+            None => timer,
+        });
+        [event, timer].into_iter().flatten().min()
+    }
+}
+
+/// The TPDOs that the dictionary describes.
+pub(super) fn tpdos(objects: &Objects) -> Vec<Tpdo> {
+    (0..MOST_PDOS)
+        .filter_map(|number| Tpdo::read(objects, number))
+        .collect()
+}
+
+impl Slave {
+    /// Reads the parameters of the TPDO whose communication or mapping parameter is `index` again.
+    pub(super) fn reconfigure_tpdo(&mut self, now: Instant, index: u16) {
+        let number = index % TPDO_MAPPING % TPDO_COMMUNICATION;
+        let Some(fresh) = Tpdo::read(&self.objects, number) else {
+            return;
+        };
+        let active = self.state.permits(Service::Pdo, &self.behaviour);
+        let place = self.tpdos.iter_mut().find(|tpdo| tpdo.index == fresh.index);
+        if let Some(place) = place {
+            let last = place.last;
+            *place = Tpdo { last, ..fresh };
+            if active {
+                self.start_tpdo(now, TPDO_COMMUNICATION + number);
+            }
+        }
+    }
+
+    /// PDOs are permitted from now on.
+    pub(super) fn start_tpdos(&mut self, now: Instant) {
+        for number in 0..MOST_PDOS {
+            self.start_tpdo(now, TPDO_COMMUNICATION + number);
+        }
+    }
+
+    fn start_tpdo(&mut self, now: Instant, index: u16) {
+        let on_start =
+            self.behaviour.tpdo_on_start && self.profile.transmit_event == TransmitEvent::Change;
+        let Some(tpdo) = self.tpdos.iter_mut().find(|tpdo| tpdo.index == index) else {
+            return;
+        };
+        tpdo.sampled = tpdo.payload(&self.objects);
+        tpdo.event = on_start && tpdo.communication.event_driven();
+        tpdo.syncs = 0;
+        tpdo.owed = false;
+        let period = tpdo.communication.event_timer;
+        tpdo.timer = (!period.is_zero()).then(|| now + period);
+    }
+
+    /// Values may have changed.
+    pub(super) fn notice_changes(&mut self) {
+        if !self.objects.take_changed()
+            || self.profile.transmit_event == TransmitEvent::TimerOnly
+            || !self.state.permits(Service::Pdo, &self.behaviour)
+        {
+            return;
+        }
+        for tpdo in &mut self.tpdos {
+            let communication = &tpdo.communication;
+            if communication.valid && (communication.event_driven() || communication.kind == 0) {
+                tpdo.event |= tpdo.payload(&self.objects) != tpdo.sampled;
+            }
+        }
+    }
+
+    /// SYNC: sends the synchronous TPDOs that are due.
+    pub(super) fn synchronise_tpdos(&mut self, now: Instant) {
+        for number in 0..self.tpdos.len() {
+            let late = self.behaviour.tpdo_one_sync_late;
+            let Some(tpdo) = self.tpdos.get_mut(number) else {
+                return;
+            };
+            let kind = tpdo.communication.kind;
+            if !tpdo.communication.valid || kind > 240 {
+                continue;
+            }
+            tpdo.syncs = tpdo.syncs.saturating_add(1);
+            let due = if kind == 0 {
+                tpdo.event
+            } else {
+                tpdo.syncs >= kind
+            };
+            if due {
+                tpdo.syncs = 0;
+                tpdo.event = false;
+            }
+            let leaves = if late {
+                std::mem::replace(&mut tpdo.owed, due)
+            } else {
+                due
+            };
+            if leaves {
+                let at = now + self.turnaround();
+                self.transmit(number, at);
+            }
+        }
+    }
+
+    /// A remote frame with the identifier of a TPDO fetches it.
+    pub(super) fn fetch_tpdo(&mut self, now: Instant, identifier: u16) {
+        if !self.behaviour.remote_frames_answered
+            || !self.state.permits(Service::Pdo, &self.behaviour)
+        {
+            return;
+        }
+        let fetched = self.tpdos.iter().position(|tpdo| {
+            let communication = &tpdo.communication;
+            communication.valid && communication.remote && communication.identifier == identifier
+        });
+        if let Some(number) = fetched {
+            let at = now + self.turnaround();
+            self.transmit(number, at);
+        }
+    }
+
+    /// Sends the event-driven TPDOs that are due.
+    pub(super) fn wake_tpdos(&mut self, now: Instant) {
+        if !self.state.permits(Service::Pdo, &self.behaviour) {
+            return;
+        }
+        for number in 0..self.tpdos.len() {
+            let due = self.tpdos.get(number).and_then(Tpdo::due);
+            if due.is_some_and(|due| due <= now) {
+                self.transmit(number, now);
+            }
+        }
+    }
+
+    /// When an event-driven TPDO is due.
+    pub(super) fn tpdos_due(&self) -> Option<Instant> {
+        if !self.state.permits(Service::Pdo, &self.behaviour) {
+            return None;
+        }
+        self.tpdos.iter().filter_map(Tpdo::due).min()
+    }
+
+    fn transmit(&mut self, number: usize, at: Instant) {
+        let Some(tpdo) = self.tpdos.get_mut(number) else {
+            return;
+        };
+        let payload = tpdo.payload(&self.objects);
+        let period = tpdo.communication.event_timer;
+        // A timer that was due keeps its pace; one that was not starts again.
+        let from = tpdo.timer.filter(|timer| *timer <= at).unwrap_or(at);
+        tpdo.timer = (!period.is_zero()).then(|| (from + period).max(at));
+        tpdo.sampled = payload;
+        tpdo.event = false;
+        tpdo.last = Some(at);
+        let identifier = identifier(tpdo.communication.identifier);
+        let bytes = payload.bytes.get(..payload.len).unwrap_or(&payload.bytes);
+        if let Some(frame) = Frame::data(identifier, bytes) {
+            self.queue.push(at, Service::Pdo, frame);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! What there is to build, and how a device may be told to behave.
+
+use std::fmt;
+
+use fieldproof_link::{Participant, SerialSettings};
+
+use crate::{canopen, modbus};
+
+/// A kind of reference device.
+#[derive(Debug, Clone, Copy)]
+pub struct DeviceKind {
+    /// Its name in a bench file: `kinco-servo`.
+    pub name: &'static str,
+    /// What it is, for people.
+    pub title: &'static str,
+    /// Its ports; a participant's port number counts them.
+    pub ports: &'static [PortKind],
+    /// The ways it can be made to depart from one clause.
+    pub faults: &'static [Fault],
+    /// The other things a right device of this kind may do.
+    pub variants: &'static [Variant],
+    /// Builds one, powered on since the lane was opened.
+    ///
+    /// # Errors
+    /// [`UnknownFault`]: it has no fault or no variant of the name asked for.
+    pub build: fn(&Settings) -> Result<Box<dyn Participant>, UnknownFault>,
+}
+
+/// One port of a kind of device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PortKind {
+    /// The role that suites use: `can`, `serial`, `inverter`.
+    pub role: &'static str,
+    /// What it is, as the device leaves the factory.
+    pub medium: Medium,
+}
+
+/// What a port is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Medium {
+    /// A CAN port.
+    Can {
+        /// Bits a second.
+        bit_rate: u32,
+    },
+    /// A serial port.
+    Serial(SerialSettings),
+}
+
+/// How one device is to be built.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Settings {
+    /// The CANopen node-ID, `1..=127`; the kind's own if `None`.
+    pub node: Option<u8>,
+    /// The Modbus address, `1..=247`; the kind's own if `None`.
+    pub address: Option<u8>,
+    /// The seed of its response times.
+    pub seed: u64,
+    /// The fault it has, by name.
+    pub fault: Option<String>,
+    /// The legal variant it is, by name.
+    pub variant: Option<String>,
+}
+
+/// One departure from one clause.
+#[derive(Debug, Clone, Copy)]
+pub struct Fault {
+    /// Its name: `boot-up-missing`.
+    pub name: &'static str,
+    /// The clause or service it departs from.
+    pub breaks: &'static str,
+    /// What one sees, in the words of a bug report.
+    pub words: &'static str,
+    /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
+    /// `gateway`.
+    pub caught_by: &'static str,
+    pub(crate) apply: fn(&mut Behaviour),
+}
+
+/// Something else that a right device may do.
+#[derive(Debug, Clone, Copy)]
+pub struct Variant {
+    /// Its name: `first-tpdo-after-an-event`.
+    pub name: &'static str,
+    /// What one sees, and why it is right.
+    pub words: &'static str,
+    pub(crate) apply: fn(&mut Behaviour),
+}
+
+/// Every setting of a device's behaviour. What a device has no use for stays at its default.
+#[derive(Debug, Clone, Default)]
+pub struct Behaviour {
+    /// Its CANopen side.
+    pub canopen: canopen::Behaviour,
+    /// Its Modbus side.
+    pub modbus: modbus::Behaviour,
+}
+
+/// The device has no fault or variant of this name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownFault {
+    /// The kind of device.
+    pub device: &'static str,
+    /// The name asked for.
+    pub name: String,
+}
+
+impl fmt::Display for UnknownFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} has no behaviour `{}`", self.device, self.name)
+    }
+}
+
+impl std::error::Error for UnknownFault {}
+
+impl DeviceKind {
+    /// `documented`, changed as `settings` ask.
+    pub(crate) fn behaviour(
+        &self,
+        documented: Behaviour,
+        settings: &Settings,
+    ) -> Result<Behaviour, UnknownFault> {
+        let mut behaviour = documented;
+        if let Some(name) = &settings.variant {
+            let variant = self.variants.iter().find(|variant| variant.name == name);
+            (variant.ok_or_else(|| self.unknown(name))?.apply)(&mut behaviour);
+        }
+        if let Some(name) = &settings.fault {
+            let fault = self.faults.iter().find(|fault| fault.name == name);
+            (fault.ok_or_else(|| self.unknown(name))?.apply)(&mut behaviour);
+        }
+        Ok(behaviour)
+    }
+
+    fn unknown(&self, name: &str) -> UnknownFault {
+        UnknownFault {
+            device: self.name,
+            name: name.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! The Huacheng SSTS1 servo drive.
+
+pub mod registers;

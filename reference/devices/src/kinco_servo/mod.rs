@@ -1,0 +1,185 @@
+//! A Kinco servo drive on CAN: 500 kbit/s, node 1.
+
+mod drive;
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use fieldproof_dictionary::{Dictionary, eds};
+use fieldproof_link::{
+    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+};
+
+use crate::canopen::{self, Factory, HARDWARE, Profile, Slave, TransmitEvent, faults};
+use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
+use drive::Drive;
+
+const NODE: u8 = 1;
+const BIT_RATE: u32 = 500_000;
+const BIT_RATES: &[u32] = &[
+    1_000_000, 800_000, 500_000, 250_000, 125_000, 50_000, 20_000,
+];
+const PORT: usize = 0;
+
+/// What can be built.
+pub(crate) const KIND: DeviceKind = DeviceKind {
+    name: "kinco-servo",
+    title: "Kinco servo drive",
+    ports: &[PortKind {
+        role: "can",
+        medium: Medium::Can { bit_rate: BIT_RATE },
+    }],
+    faults: &[
+        faults::ABORT_CODE_WRONG,
+        faults::ABORT_NAMES_ANOTHER_OBJECT,
+        faults::BOOT_UP_MISSING,
+        faults::HEARTBEAT_STATE_WRONG,
+        faults::TPDO_ONE_SYNC_LATE,
+        faults::TOGGLE_NOT_ALTERNATED,
+        faults::EXPEDITED_SIZE_WRONG,
+        faults::STALE_VALUE_AFTER_WRITE,
+        faults::SDO_ANSWERED_IN_STOPPED,
+        faults::PDO_IN_PRE_OPERATIONAL,
+        faults::DOWNLOAD_ACK_MISSING,
+        faults::MAPPING_ENTRY_BYTE_ORDER,
+    ],
+    variants: &[
+        Variant {
+            name: "download-data-not-echoed",
+            words: "leaves bytes 4 to 7 of a download response 0, as CiA 301 has it",
+            apply: |behaviour| behaviour.canopen.echo_download_data = false,
+        },
+        canopen::variants::NO_TPDO_ON_START,
+        canopen::variants::REMOTE_FRAMES_IGNORED,
+        canopen::variants::HEARTBEAT_AT_ONCE,
+        canopen::variants::SLOW,
+    ],
+    build,
+};
+
+/// What the manual documents.
+fn documented() -> Behaviour {
+    Behaviour {
+        canopen: canopen::Behaviour {
+            echo_download_data: true,
+            ..canopen::Behaviour::default()
+        },
+        ..Behaviour::default()
+    }
+}
+
+static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
+    eds::read(include_str!(
+        "../../../../fixtures/devices/kinco-servo/kinco-servo.eds"
+    ))
+    .dictionary
+});
+
+fn profile() -> Profile {
+    Profile {
+        dictionary: &DICTIONARY,
+        boot_time: Duration::from_millis(8),
+        produces_sync: false,
+        guarding: true,
+        transmit_event: TransmitEvent::Change,
+        lowest_transmit_type: 0,
+        lss: None,
+        saved_on_write: &[],
+        node_object: None,
+        bit_rate_object: None,
+    }
+}
+
+fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
+    let behaviour = KIND.behaviour(documented(), settings)?;
+    let factory = Factory {
+        node: settings.node.unwrap_or(NODE),
+        bit_rate: BIT_RATE,
+        seed: settings.seed,
+    };
+    let mut drive = Drive::default();
+    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut drive);
+    Ok(Box::new(KincoServo { slave, drive }))
+}
+
+/// The drive on its bus.
+#[derive(Debug)]
+struct KincoServo {
+    slave: Slave,
+    drive: Drive,
+}
+
+impl KincoServo {
+    fn condition(&mut self, now: Instant, name: &str, active: bool) -> Result<(), NotOffered> {
+        match name {
+            "hardware-fault" if active != self.drive.hardware_fault => {
+                self.drive.hardware_fault = active;
+                self.slave.set_error(now, HARDWARE, active);
+            }
+            "hardware-fault" => {}
+            "local-control" => self.drive.local_control = active,
+            _ => return Err(NotOffered),
+        }
+        Ok(())
+    }
+}
+
+impl Participant for KincoServo {
+    fn line(&self, _: usize) -> Line {
+        self.slave.line()
+    }
+
+    fn receive(&mut self, now: Instant, _: usize, reception: Reception, _: &mut Outbox) {
+        if let Reception::Frame(frame) = reception {
+            self.slave.receive(now, &frame, &mut self.drive);
+        }
+    }
+
+    fn wake_at(&self) -> Option<Instant> {
+        self.slave.wake_at()
+    }
+
+    fn wake(&mut self, now: Instant, out: &mut Outbox) {
+        self.slave.wake(now, PORT, &mut self.drive, out);
+    }
+
+    fn stimulate(
+        &mut self,
+        now: Instant,
+        stimulus: &Stimulus,
+        _: &mut Outbox,
+    ) -> Result<(), NotOffered> {
+        match stimulus {
+            Stimulus::Power { on } => self.slave.power(now, *on, &mut self.drive),
+            Stimulus::ProcessValue { name, value } => {
+                self.slave.set_process_value(name, *value)?;
+            }
+            Stimulus::Condition { name, active } => self.condition(now, name, *active)?,
+            Stimulus::Setting { name, value } => match name.as_str() {
+                "node" => self.slave.set_node(now, *value)?,
+                "bit-rate" => self.slave.set_bit_rate(*value, BIT_RATES)?,
+                _ => return Err(NotOffered),
+            },
+        }
+        Ok(())
+    }
+
+    fn offers(&self) -> Vec<StimulusKind> {
+        vec![
+            StimulusKind::Power,
+            StimulusKind::ProcessValue,
+            StimulusKind::Condition,
+            StimulusKind::Setting,
+        ]
+    }
+
+    fn state(&self) -> BTreeMap<String, String> {
+        let mut state = self.slave.state();
+        state.extend(self.drive.state());
+        state
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,4 @@
+//! The Liaomiao multi-turn encoder.
+
+pub mod model;
+pub mod registers;
