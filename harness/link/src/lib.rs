@@ -10,6 +10,7 @@ mod participant;
 mod signal;
 pub mod sim;
 mod time;
+mod wrap;
 
 pub use lane::{
     Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
@@ -18,3 +19,4 @@ pub use lane::{
 pub use participant::{NotOffered, Outbox, Participant, Stimulus, StimulusKind};
 pub use signal::{Character, Line, Parity, Reception, SerialSettings, StopBits, Transmission};
 pub use time::Instant;
+pub use wrap::{FaultyLine, LineFault};

@@ -8,3 +8,4 @@ mod companions;
 mod lane;
 mod properties;
 mod serial;
+mod wrap;
