@@ -1,0 +1,87 @@
+//! A 510-series inverter (A510) with a Modbus port: what stands behind a CANopen gateway.
+
+mod registers;
+
+use std::collections::BTreeMap;
+
+use fieldproof_link::{
+    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+};
+
+use crate::modbus::{Behaviour, ModbusSlave, Registers as _};
+pub use registers::{InverterRegisters, LINE, STATION};
+
+/// The inverter: one serial port, [`LINE`], station [`STATION`].
+#[derive(Debug, Clone)]
+pub struct Inverter {
+    slave: ModbusSlave<InverterRegisters>,
+}
+
+impl Inverter {
+    /// One that conforms; `seed` fixes its response times.
+    pub fn new(seed: u64) -> Inverter {
+        Inverter::behaving(Behaviour::CONFORMING, seed)
+    }
+
+    /// One that behaves so; `seed` fixes its response times.
+    pub fn behaving(behaviour: Behaviour, seed: u64) -> Inverter {
+        Inverter {
+            slave: ModbusSlave::new(InverterRegisters::default(), behaviour, seed),
+        }
+    }
+
+    /// Its registers.
+    pub fn registers(&self) -> &InverterRegisters {
+        self.slave.registers()
+    }
+}
+
+impl Participant for Inverter {
+    fn line(&self, _: usize) -> Line {
+        self.slave.line()
+    }
+
+    fn receive(&mut self, now: Instant, _: usize, reception: Reception, _: &mut Outbox) {
+        if let Reception::Character(character) = reception {
+            self.slave.receive(now, character);
+        }
+    }
+
+    fn wake_at(&self) -> Option<Instant> {
+        self.slave.wake_at()
+    }
+
+    fn wake(&mut self, now: Instant, out: &mut Outbox) {
+        if let Some(characters) = self.slave.wake(now) {
+            out.send(0, Transmission::Characters(characters));
+        }
+    }
+
+    /// Process values are registers, the number in hexadecimal: `register 2520`.
+    fn stimulate(
+        &mut self,
+        _: Instant,
+        stimulus: &Stimulus,
+        _: &mut Outbox,
+    ) -> Result<(), NotOffered> {
+        match stimulus {
+            Stimulus::ProcessValue { name, value } => {
+                let registers = self.slave.registers_mut();
+                registers.set_process_value(name, *value)
+            }
+            _ => Err(NotOffered),
+        }
+    }
+
+    fn offers(&self) -> Vec<StimulusKind> {
+        vec![StimulusKind::ProcessValue]
+    }
+
+    /// Every register: `register 2501`, the value in decimal.
+    fn state(&self) -> BTreeMap<String, String> {
+        self.slave.registers().state()
+    }
+}
+
+#[cfg(test)]
+mod tests;
