@@ -4,6 +4,9 @@
 //! *receive until this instant*. What answers on the other side (a reference device in simulation) and what the tester
 //! does meanwhile (a SYNC producer, an inverter behind a gateway) are [`Participant`]s: driven from outside, with no
 //! clock and no I/O of their own.
+//!
+//! [`sim`] is a lane on simulated buses, exact to the bit time and in no wall time. [`FaultyLine`] is a lane before a
+//! lane that spoils what comes through it.
 
 mod lane;
 mod participant;

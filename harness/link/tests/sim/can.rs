@@ -104,6 +104,17 @@ fn only_the_head_of_a_queue_competes() {
 }
 
 #[test]
+fn of_equal_identifiers_the_one_that_joined_first_goes_first() {
+    let first = Actor::new(CAN_500K).send(us(1_000), "123#");
+    let second = Actor::new(CAN_500K).send(us(1_000), "123#00");
+    let order: Vec<_> = arrivals(&mut lane(vec![first, second]), ms(2))
+        .into_iter()
+        .map(|(_, text)| text)
+        .collect();
+    assert_eq!(order, ["123#", "123#00"]);
+}
+
+#[test]
 fn the_tester_arbitrates_like_any_other() {
     // The device wants to send at the same instant; the lower identifier goes first, whoever asked first.
     let cases = [("100#", us(1_000)), ("300#", us(1_102))];
@@ -148,6 +159,19 @@ fn the_tester_gives_up_on_a_bus_that_is_never_free_for_it() {
 }
 
 #[test]
+fn a_frame_that_has_started_is_not_given_up() {
+    let mut babbler = Actor::new(CAN_500K);
+    for _ in 0..943 {
+        babbler = babbler.send(ms(1), "000#");
+    }
+    let mut lane = lane(vec![babbler]);
+    // 943 frames every 106 us from 1 ms on; it starts before 101.001 ms and ends after that.
+    let sent = lane.send(CAN, us(1_001), transmission("7FF#")).unwrap();
+    assert_eq!(sent.start, us(1_000 + 943 * 106));
+    assert!(sent.end > us(101_001));
+}
+
+#[test]
 fn what_the_device_sends_waits_until_the_bit_rates_agree() {
     let device = Actor::new(Line::Can { bit_rate: 125_000 })
         .send(ms(1), "701#00")
@@ -183,6 +207,17 @@ fn a_frame_is_sent_again_if_the_bit_rate_changed_under_it() {
     assert_eq!(lane.receive(ms(5)), Ok(None));
     lane.set_line(CAN, CAN_500K).unwrap();
     let expected = script(&[(us(5_100), "000#")]);
+    assert_eq!(arrivals(&mut lane, ms(10)), expected);
+}
+
+#[test]
+fn a_node_that_was_away_during_a_frame_has_not_heard_it() {
+    let mut lane = lane(vec![Actor::new(CAN_500K).send(ms(1), "000#")]);
+    assert_eq!(lane.receive(us(1_050)), Ok(None));
+    lane.set_line(CAN, Line::Off).unwrap();
+    lane.set_line(CAN, CAN_500K).unwrap();
+    // From 1000 to 1100 in vain, and once more after the intermission.
+    let expected = script(&[(us(1_206), "000#")]);
     assert_eq!(arrivals(&mut lane, ms(10)), expected);
 }
 

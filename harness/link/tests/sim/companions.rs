@@ -8,7 +8,7 @@ use fieldproof_link::{
     Transmission,
 };
 
-use crate::actor::{Actor, CAN_500K, MODBUS_9600, ms, received, transmission, us};
+use crate::actor::{Actor, CAN_500K, Do, MODBUS_9600, ms, received, transmission, us};
 
 const PERIOD: Duration = Duration::from_millis(10);
 
@@ -83,6 +83,45 @@ fn indices_are_not_used_again_and_detaching_takes_back_what_waits() {
 }
 
 #[test]
+fn detaching_leaves_the_frame_on_the_bus_and_those_behind_it() {
+    let mut builder = Builder::new();
+    let can = builder.can_bus("can", 500_000);
+    builder.device(Actor::new(CAN_500K).boxed(), &[can]);
+    let mut lane = builder.build();
+    let script = Actor::new(CAN_500K).send(ms(1), "000#").send(ms(1), "100#");
+    let first = lane.attach(can, script.boxed());
+    let second = lane.attach(can, Actor::new(CAN_500K).send(ms(1), "200#").boxed());
+    assert_eq!(lane.receive(us(1_050)), Ok(None));
+    lane.detach(first);
+    // 000# to its end; not 100#; 200# 96 us from 1106 us on.
+    let on_the_bus = arrival(us(1_100), Origin::Companion(first), "000#");
+    let behind = arrival(us(1_202), Origin::Companion(second), "200#");
+    assert_eq!(lane.receive(ms(10)), Ok(Some(on_the_bus)));
+    assert_eq!(lane.receive(ms(10)), Ok(Some(behind)));
+    assert_eq!(lane.receive(ms(10)), Ok(None));
+}
+
+#[test]
+fn one_hears_its_own_port_only() {
+    let mut builder = Builder::new();
+    let ports = [
+        builder.can_bus("can", 500_000),
+        builder.can_bus("other", 500_000),
+    ];
+    let device = Actor::new(CAN_500K)
+        .send(ms(1), "000#")
+        .then(ms(2), Do::Send(1, transmission("000#")));
+    builder.device(device.boxed(), &ports);
+    let mut lane = builder.build();
+    let listener = Actor::new(CAN_500K);
+    let heard = listener.heard();
+    lane.attach(ports[1], listener.boxed());
+    assert_eq!(lane.receive(ms(10)).unwrap().unwrap().port, ports[0]);
+    assert_eq!(lane.receive(ms(10)).unwrap().unwrap().port, ports[1]);
+    assert_eq!(*heard.lock().unwrap(), [(us(2_100), 0, received("000#"))]);
+}
+
+#[test]
 fn one_that_is_off_takes_no_part() {
     let mut builder = Builder::new();
     let can = builder.can_bus("can", 500_000);
@@ -104,7 +143,7 @@ fn one_behind_a_serial_port_answers_the_device() {
     let can = builder.can_bus("can", 500_000);
     let inverter = builder.serial_line("inverter", MODBUS_9600);
     // A gateway: 0 is its CAN port, 1 its serial one.
-    let request = crate::actor::Do::Send(1, Transmission::bytes(&[1]));
+    let request = Do::Send(1, Transmission::bytes(&[1]));
     let gateway = Actor::new(Line::Serial(MODBUS_9600)).then(ms(1), request);
     let heard = gateway.heard();
     builder.device(gateway.boxed(), &[can, inverter]);

@@ -89,6 +89,14 @@ fn what_follows_while_sending_joins_without_a_gap() {
 }
 
 #[test]
+fn what_comes_after_a_pause_counts_from_its_own_start() {
+    let device = sends(ms(1), &[1]).then(ms(5), Do::Send(0, Transmission::bytes(&[2])));
+    let mut lane = lane(vec![device.boxed()]);
+    let expected = [(ns(2_145_833), clean(1)), (ns(6_145_833), clean(2))];
+    assert_eq!(arrivals(&mut lane, ms(10)), expected);
+}
+
+#[test]
 fn other_settings_spoil_what_is_heard() {
     let other = SerialSettings {
         baud: 19_200,
@@ -158,6 +166,19 @@ fn two_senders_at_once_spoil_each_other() {
 }
 
 #[test]
+fn a_collision_ends_with_the_characters_in_it() {
+    let first = sends(ms(1), &[1, 2]);
+    let second = sends(ms(1), &[9]);
+    let mut lane = lane(vec![first.boxed(), second.boxed()]);
+    let expected = [
+        (ns(2_145_833), spoilt(1)),
+        (ns(2_145_833), spoilt(9)),
+        (ns(3_291_667), clean(2)),
+    ];
+    assert_eq!(arrivals(&mut lane, ms(10)), expected);
+}
+
+#[test]
 fn one_that_ends_as_another_begins_is_clean() {
     let first = sends(ms(1), &[1]);
     let second = sends(ns(2_145_833), &[2]);
@@ -168,10 +189,14 @@ fn one_that_ends_as_another_begins_is_clean() {
 
 #[test]
 fn a_device_that_loses_power_breaks_off() {
-    let mut lane = lane(vec![sends(ms(1), &[1, 2, 3]).boxed()]);
+    let device = sends(ms(1), &[1, 2, 3]).then(ms(20), Do::Send(0, Transmission::bytes(&[4])));
+    let mut lane = lane(vec![device.boxed()]);
     assert_eq!(lane.receive(ms(2)), Ok(None));
     lane.stimulate(&Stimulus::Power { on: false }).unwrap();
     assert_eq!(arrivals(&mut lane, ms(10)), [(ns(2_145_833), spoilt(1))]);
+    // What it had to send is lost.
+    lane.stimulate(&Stimulus::Power { on: true }).unwrap();
+    assert_eq!(arrivals(&mut lane, ms(30)), [(ns(21_145_833), clean(4))]);
 }
 
 /// Answers with one character when the line has been silent for 3.5 of them.
