@@ -247,20 +247,3 @@ fn record_that_breaks_off_within_a_case_is_an_error() {
 fn run_without_lanes_is_a_file_too() {
     assert_eq!(read(&junit(&[], false)).tests, 0);
 }
-
-#[test]
-fn one_case_is_held_at_a_time() {
-    let mut lane = JunitLane::new(std::io::sink(), false);
-    lane.event(&lane_started("drive"));
-    for suite in 0..10 {
-        lane.event(&suite_started(&format!("suite-{suite}")));
-        for index in 0..1_000 {
-            for event in case(&format!("suite-{suite}/case[index={index}]"), Verdict::Fail) {
-                lane.event(&event);
-            }
-        }
-    }
-    let (_, heads) = lane.finish().unwrap();
-    // What is kept does not grow with the cases.
-    assert_eq!(heads.len(), 10);
-}
