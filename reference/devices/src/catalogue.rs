@@ -94,6 +94,8 @@ pub struct Behaviour {
     pub canopen: canopen::Behaviour,
     /// Its Modbus side.
     pub modbus: modbus::Behaviour,
+    /// Whether the speed that an encoder shows on CAN carries its sign.
+    pub speed_sign_on_can: modbus::SpeedSign,
 }
 
 /// The device has no fault or variant of this name.

@@ -9,7 +9,7 @@ pub mod catalogue;
 pub mod huacheng_ssts1;
 pub mod inverter;
 mod kinco_servo;
-pub mod liaomiao_encoder;
+mod liaomiao_encoder;
 pub mod modbus;
 #[cfg(test)]
 mod script;
@@ -23,7 +23,7 @@ use fieldproof_link::Participant;
 
 /// Every kind of reference device, by name.
 pub fn kinds() -> &'static [DeviceKind] {
-    &[kinco_servo::KIND]
+    &[kinco_servo::KIND, liaomiao_encoder::KIND]
 }
 
 /// The kind called `name`, if there is one.

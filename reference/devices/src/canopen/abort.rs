@@ -9,8 +9,6 @@ impl Abort {
     pub(crate) const TOGGLE: Abort = Abort(0x0503_0000);
     /// Command specifier not valid or unknown.
     pub(crate) const UNKNOWN_COMMAND: Abort = Abort(0x0504_0001);
-    /// Out of memory.
-    pub(crate) const OUT_OF_MEMORY: Abort = Abort(0x0504_0005);
     /// Attempt to read a write-only object.
     pub(crate) const WRITE_ONLY: Abort = Abort(0x0601_0001);
     /// Attempt to write a read-only object.

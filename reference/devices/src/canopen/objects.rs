@@ -206,18 +206,22 @@ impl Objects {
         indexes: &std::ops::RangeInclusive<u16>,
         node: u8,
     ) -> BTreeMap<Address, Vec<u8>> {
-        let differs = |(address, object): &(Address, &Object)| {
-            let entry = self.dictionary.entry(address.index(), address.sub());
-            entry.is_some_and(|entry| {
-                let mut fresh = Object::new(entry);
-                fresh.load(entry, node);
-                fresh.value != object.value
+        let candidates = self
+            .iter()
+            .filter(|(address, object)| object.writable && indexes.contains(&address.index()));
+        candidates
+            .filter_map(|(address, _)| {
+                Some((address, self.unless_default(address, node)?.to_vec()))
             })
-        };
-        self.iter()
-            .filter(|(address, object)| object.writable && indexes.contains(&address.index()))
-            .filter(differs)
-            .map(|(address, object)| (address, object.value.clone()))
             .collect()
+    }
+
+    /// The value at `address` unless it is the default of node `node`.
+    pub(crate) fn unless_default(&self, address: Address, node: u8) -> Option<&[u8]> {
+        let entry = self.dictionary.entry(address.index(), address.sub())?;
+        let mut fresh = Object::new(entry);
+        fresh.load(entry, node);
+        let object = self.get(address)?;
+        (fresh.value != object.value).then_some(&object.value)
     }
 }

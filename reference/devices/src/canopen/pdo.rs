@@ -114,7 +114,6 @@ pub(super) fn fields(objects: &Objects, index: u16) -> Vec<Field> {
 /// A PDO that is received.
 #[derive(Debug)]
 pub(super) struct Rpdo {
-    pub(super) index: u16,
     communication: Communication,
     fields: Vec<Field>,
     /// What arrived and waits for SYNC.
@@ -125,7 +124,6 @@ pub(super) struct Rpdo {
 pub(super) fn rpdos(objects: &Objects) -> Vec<Rpdo> {
     let rpdo = |number| {
         Some(Rpdo {
-            index: RPDO_COMMUNICATION + number,
             communication: Communication::read(objects, RPDO_COMMUNICATION + number)?,
             fields: fields(objects, RPDO_MAPPING + number),
             latched: None,

@@ -26,6 +26,8 @@ pub(crate) struct Profile {
     /// The objects of 8 bits that hold the node-ID and the bit-rate code and change them from the next reset on.
     pub(crate) node_object: Option<Address>,
     pub(crate) bit_rate_object: Option<Address>,
+    /// Objects that are one value; after a reset the second has what the first has.
+    pub(crate) twins: &'static [(Address, Address)],
 }
 
 /// What makes an event-driven TPDO leave, beside its event timer.

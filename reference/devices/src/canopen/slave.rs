@@ -178,6 +178,11 @@ impl Slave {
         self.queue.flush(now, port, out);
     }
 
+    /// The device has set values itself.
+    pub(crate) fn values_changed(&mut self) {
+        self.notice_changes();
+    }
+
     /// Sets what the device measures: `name` is an object such as `6063:00`.
     ///
     /// # Errors
@@ -248,6 +253,11 @@ impl Slave {
 
     fn initialise(&mut self, now: Instant) {
         self.show_configuration();
+        for (first, second) in self.profile.twins {
+            if let Some(number) = self.objects.number(*first) {
+                self.objects.set_number(*second, i64::from(number));
+            }
+        }
         self.state = State::Initialising;
         self.lss = LssState::Waiting;
         self.queue.clear();
@@ -346,6 +356,9 @@ impl Slave {
             return Err(Abort::READ_ONLY);
         }
         object.takes(value)?;
+        if let Some(twin) = self.twin(address).and_then(|twin| self.objects.get(twin)) {
+            twin.takes(value)?;
+        }
         if !self.permitted(address, value)? {
             return Ok(true);
         }
@@ -354,11 +367,22 @@ impl Slave {
             Answer::Refused(abort) => return Err(abort),
             Answer::Later => return Ok(false),
         }
-        self.objects.set(address, value);
-        application.written(address, &mut self.objects);
-        self.keep(address);
-        self.follow(now, address);
+        for address in [Some(address), self.twin(address)].into_iter().flatten() {
+            self.objects.set(address, value);
+            application.written(address, &mut self.objects);
+            self.keep(address);
+            self.follow(now, address);
+        }
         Ok(true)
+    }
+
+    fn twin(&self, address: Address) -> Option<Address> {
+        let twins = self.profile.twins.iter();
+        twins.fold(None, |found, (first, second)| match address {
+            address if address == *first => Some(*second),
+            address if address == *second => Some(*first),
+            _ => found,
+        })
     }
 
     /// Whether the value is to be stored as the others are; `false` if it was an order and is done.
@@ -418,13 +442,14 @@ impl Slave {
         Ok(())
     }
 
-    /// Saves what is saved when it is written.
+    /// Saves what is saved when it is written; a default need not be.
     fn keep(&mut self, address: Address) {
         if !self.profile.saved_on_write.contains(&address.index()) {
             return;
         }
-        if let Some(object) = self.objects.get(address) {
-            self.memory.values.insert(address, object.value().to_vec());
+        self.memory.values.remove(&address);
+        if let Some(value) = self.objects.unless_default(address, self.node) {
+            self.memory.values.insert(address, value.to_vec());
         }
     }
 
@@ -455,12 +480,6 @@ impl Slave {
             self.memory.bit_rate = rate.copied().unwrap_or(self.memory.bit_rate);
             self.pending_bit_rate = self.memory.bit_rate;
         }
-    }
-
-    /// Sets a value from inside the device as if it had been written: what depends on it follows.
-    pub(crate) fn set_parameter(&mut self, now: Instant, address: Address, value: i64) {
-        self.objects.set_number(address, value);
-        self.follow(now, address);
     }
 
     /// Everything that a case could have left changed.

@@ -118,8 +118,7 @@ impl Slave {
     }
 
     fn start_tpdo(&mut self, now: Instant, index: u16) {
-        let on_start =
-            self.behaviour.tpdo_on_start && self.profile.transmit_event == TransmitEvent::Change;
+        let on_start = self.behaviour.tpdo_on_start;
         let Some(tpdo) = self.tpdos.iter_mut().find(|tpdo| tpdo.index == index) else {
             return;
         };
@@ -133,15 +132,14 @@ impl Slave {
 
     /// Values may have changed.
     pub(super) fn notice_changes(&mut self) {
-        if !self.objects.take_changed()
-            || self.profile.transmit_event == TransmitEvent::TimerOnly
-            || !self.state.permits(Service::Pdo, &self.behaviour)
-        {
+        if !self.objects.take_changed() || !self.state.permits(Service::Pdo, &self.behaviour) {
             return;
         }
+        let on_change = self.profile.transmit_event == TransmitEvent::Change;
         for tpdo in &mut self.tpdos {
             let communication = &tpdo.communication;
-            if communication.valid && (communication.event_driven() || communication.kind == 0) {
+            let watched = communication.kind == 0 || (communication.event_driven() && on_change);
+            if communication.valid && watched {
                 tpdo.event |= tpdo.payload(&self.objects) != tpdo.sampled;
             }
         }

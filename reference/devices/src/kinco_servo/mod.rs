@@ -88,6 +88,7 @@ fn profile() -> Profile {
         saved_on_write: &[],
         node_object: None,
         bit_rate_object: None,
+        twins: &[],
     }
 }
 

@@ -1,4 +1,290 @@
-//! The Liaomiao multi-turn encoder.
+//! A Liaomiao multi-turn encoder: port 0 on CAN (250 kbit/s, node 32), port 1 on a serial line (9600 8N1, address 32).
+//! Both show the same shaft.
 
-pub mod model;
-pub mod registers;
+mod model;
+mod registers;
+mod shaft;
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use fieldproof_dictionary::{Dictionary, eds};
+use fieldproof_link::{
+    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+};
+
+use crate::canopen::{self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults};
+use crate::catalogue::{
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
+};
+use crate::modbus::{self, ModbusSlave, SpeedSign};
+pub use model::EncoderModel;
+use registers::EncoderRegisters;
+use shaft::Shaft;
+
+const NODE: u8 = 32;
+const BIT_RATE: u32 = 250_000;
+/// By their code in 3001h and their index in LSS table 0.
+const BIT_RATES: &[u32] = &[
+    1_000_000, 800_000, 500_000, 250_000, 125_000, 100_000, 50_000, 20_000, 10_000,
+];
+/// The event timer of TPDO1 is the cyclic timer.
+const TWINS: &[(Address, Address)] = &[(Address::new(0x6200, 0), Address::new(0x1800, 5))];
+const CAN: usize = 0;
+const SERIAL: usize = 1;
+
+/// What can be built.
+pub(crate) const KIND: DeviceKind = DeviceKind {
+    name: "liaomiao-encoder",
+    title: "Liaomiao multi-turn absolute encoder",
+    ports: &[
+        PortKind {
+            role: "can",
+            medium: Medium::Can { bit_rate: BIT_RATE },
+        },
+        PortKind {
+            role: "serial",
+            medium: Medium::Serial(registers::LINE),
+        },
+    ],
+    faults: &[
+        faults::ABORT_CODE_WRONG,
+        faults::ABORT_NAMES_ANOTHER_OBJECT,
+        faults::BOOT_UP_MISSING,
+        faults::HEARTBEAT_STATE_WRONG,
+        faults::TPDO_ONE_SYNC_LATE,
+        faults::TOGGLE_NOT_ALTERNATED,
+        faults::EXPEDITED_SIZE_WRONG,
+        faults::STALE_VALUE_AFTER_WRITE,
+        faults::SDO_ANSWERED_IN_STOPPED,
+        faults::PDO_IN_PRE_OPERATIONAL,
+        faults::DOWNLOAD_ACK_MISSING,
+        faults::LSS_REVISION_ANSWERS_5B,
+        faults::NODE_ID_ACTIVE_BEFORE_RESET,
+        SPEED_SIGN_LOST,
+        modbus::faults::SPEED_SIGN_LOST,
+        modbus::faults::CRC_BYTES_SWAPPED,
+        modbus::faults::STALE_CRC_ACCEPTED,
+        modbus::faults::EXCEPTION_WITHOUT_80H,
+        modbus::faults::EXCEPTION_03_FOR_02,
+        modbus::faults::REPLY_TOO_EARLY,
+        modbus::faults::BROADCAST_ANSWERED,
+        modbus::faults::WRONG_BYTE_COUNT,
+        modbus::faults::WRITE_ECHO_WRONG_VALUE,
+        modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
+        modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
+    ],
+    variants: &[
+        Variant {
+            name: "tpdo-on-start",
+            words: "sends TPDO1 on entering Operational, as newer editions of CiA 406 have it, then every period",
+            apply: |behaviour| behaviour.canopen.tpdo_on_start = true,
+        },
+        canopen::variants::REMOTE_FRAMES_IGNORED,
+        canopen::variants::HEARTBEAT_AT_ONCE,
+        canopen::variants::SLOW,
+    ],
+    build,
+};
+
+const SPEED_SIGN_LOST: Fault = Fault {
+    name: "speed-sign-lost-on-can",
+    breaks: "Liaomiao encoder manual, object 2000h: the speed is signed",
+    words: "shows the magnitude of the speed in 2000h and in both TPDOs",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.speed_sign_on_can = SpeedSign::Lost,
+};
+
+/// What the manual documents.
+fn documented() -> Behaviour {
+    Behaviour {
+        canopen: canopen::Behaviour {
+            tpdo_on_start: false,
+            ..canopen::Behaviour::default()
+        },
+        ..Behaviour::default()
+    }
+}
+
+static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
+    eds::read(include_str!(
+        "../../../../fixtures/devices/liaomiao-encoder/liaomiao-encoder.eds"
+    ))
+    .dictionary
+});
+
+fn profile() -> Profile {
+    Profile {
+        dictionary: &DICTIONARY,
+        boot_time: Duration::from_millis(12),
+        produces_sync: false,
+        guarding: true,
+        transmit_event: TransmitEvent::TimerOnly,
+        lowest_transmit_type: 0,
+        lss: Some(LssAbilities {
+            bit_rates: BIT_RATES,
+        }),
+        saved_on_write: &[0x2002, 0x2004, 0x2005, 0x6003, 0x6200],
+        node_object: Some(Address::new(0x3000, 0)),
+        bit_rate_object: Some(Address::new(0x3001, 0)),
+        twins: TWINS,
+    }
+}
+
+fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
+    let behaviour = KIND.behaviour(documented(), settings)?;
+    let factory = Factory {
+        node: settings.node.unwrap_or(NODE),
+        bit_rate: BIT_RATE,
+        seed: settings.seed,
+    };
+    let mut registers = EncoderRegisters::new(settings.address.unwrap_or(registers::ADDRESS));
+    let speed_sign = behaviour.speed_sign_on_can;
+    let mut shaft = Shaft {
+        model: &mut registers.model,
+        speed_sign,
+    };
+    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut shaft);
+    Ok(Box::new(LiaomiaoEncoder {
+        slave,
+        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed),
+        powered: true,
+        speed_sign,
+    }))
+}
+
+/// The encoder on its two ports.
+#[derive(Debug)]
+struct LiaomiaoEncoder {
+    slave: Slave,
+    modbus: ModbusSlave<EncoderRegisters>,
+    powered: bool,
+    speed_sign: SpeedSign,
+}
+
+impl LiaomiaoEncoder {
+    /// The CAN side, and the shaft that it shows.
+    fn can(&mut self) -> (&mut Slave, Shaft<'_>) {
+        let shaft = Shaft {
+            model: &mut self.modbus.registers_mut().model,
+            speed_sign: self.speed_sign,
+        };
+        (&mut self.slave, shaft)
+    }
+
+    /// The shaft has turned, or the serial side has set how it is shown.
+    fn show(&mut self) {
+        let (slave, shaft) = self.can();
+        shaft.show(&mut slave.objects);
+        slave.values_changed();
+    }
+
+    fn power(&mut self, now: Instant, on: bool) {
+        self.powered = on;
+        self.modbus.restart();
+        let (slave, mut shaft) = self.can();
+        slave.power(now, on, &mut shaft);
+    }
+
+    fn switch(&mut self, now: Instant, name: &str, value: i64) -> Result<(), NotOffered> {
+        match name {
+            "node" => self.slave.set_node(now, value),
+            "bit-rate" => self.slave.set_bit_rate(value, BIT_RATES),
+            "address" => self.modbus.registers_mut().set_address(value),
+            "baud" => {
+                self.modbus.registers_mut().set_baud(value)?;
+                self.modbus.restart();
+                Ok(())
+            }
+            _ => Err(NotOffered),
+        }
+    }
+}
+
+impl Participant for LiaomiaoEncoder {
+    fn line(&self, port: usize) -> Line {
+        match port {
+            SERIAL if self.powered => self.modbus.line(),
+            CAN => self.slave.line(),
+            _ => Line::Off,
+        }
+    }
+
+    fn receive(&mut self, now: Instant, port: usize, reception: Reception, _: &mut Outbox) {
+        match (port, reception) {
+            (CAN, Reception::Frame(frame)) => {
+                let (slave, mut shaft) = self.can();
+                slave.receive(now, &frame, &mut shaft);
+            }
+            (SERIAL, Reception::Character(character)) if self.powered => {
+                self.modbus.receive(now, character);
+            }
+            _ => {}
+        }
+    }
+
+    fn wake_at(&self) -> Option<Instant> {
+        let serial = self.modbus.wake_at().filter(|_| self.powered);
+        [self.slave.wake_at(), serial].into_iter().flatten().min()
+    }
+
+    fn wake(&mut self, now: Instant, out: &mut Outbox) {
+        let (slave, mut shaft) = self.can();
+        slave.wake(now, CAN, &mut shaft, out);
+        if !self.powered || self.modbus.wake_at().is_none_or(|at| at > now) {
+            return;
+        }
+        let before = self.modbus.registers().model;
+        if let Some(characters) = self.modbus.wake(now) {
+            out.send(SERIAL, Transmission::Characters(characters));
+        }
+        if self.modbus.registers().model != before {
+            self.show();
+        }
+    }
+
+    /// Process values: `position` in counts, `speed` in 1/10000 rpm, `temperature` in 1/100 °C, a measured register
+    /// (`register 0004`), `6004:00` and `2000:00`.
+    fn stimulate(
+        &mut self,
+        now: Instant,
+        stimulus: &Stimulus,
+        _: &mut Outbox,
+    ) -> Result<(), NotOffered> {
+        match stimulus {
+            Stimulus::Power { on } => self.power(now, *on),
+            Stimulus::ProcessValue { name, value } => {
+                let name = match name.as_str() {
+                    "6004:00" => "position",
+                    "2000:00" => "speed",
+                    other => other,
+                };
+                let registers = self.modbus.registers_mut();
+                registers.set_process_value(name, *value)?;
+                self.show();
+            }
+            Stimulus::Setting { name, value } => self.switch(now, name, *value)?,
+            Stimulus::Condition { .. } => return Err(NotOffered),
+        }
+        Ok(())
+    }
+
+    fn offers(&self) -> Vec<StimulusKind> {
+        vec![
+            StimulusKind::Power,
+            StimulusKind::ProcessValue,
+            StimulusKind::Setting,
+        ]
+    }
+
+    fn state(&self) -> BTreeMap<String, String> {
+        use modbus::Registers as _;
+        let mut state = self.slave.state();
+        state.extend(self.modbus.registers().state());
+        state
+    }
+}
+
+#[cfg(test)]
+mod tests;

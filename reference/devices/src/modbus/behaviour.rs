@@ -42,9 +42,10 @@ pub enum AddressChangeReply {
 }
 
 /// Whether a register that holds a speed carries its sign.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SpeedSign {
     /// It does.
+    #[default]
     Kept,
     /// It holds the magnitude.
     Lost,
