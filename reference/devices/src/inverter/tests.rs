@@ -1,5 +1,10 @@
 use std::time::Duration;
 
+use fieldproof_dictionary::Access;
+use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_link::sim::Builder;
+use fieldproof_link::{Character, Lane};
+
 use super::*;
 use crate::modbus::script::Script;
 
@@ -73,7 +78,7 @@ fn plays_as_a_participant() {
     let mut now = Instant::START;
     for byte in b"\x01\x03\x25\x20\x00\x01\x8E\xCC" {
         now = now + Duration::from_nanos(520_833);
-        let character = fieldproof_link::Character::new(*byte);
+        let character = Character::new(*byte);
         inverter.receive(now, 0, Reception::Character(character), &mut out);
     }
     while let Some(at) = inverter.wake_at() {
@@ -90,4 +95,69 @@ fn plays_as_a_participant() {
     let wrong = Stimulus::Power { on: false };
     let refused = inverter.stimulate(now, &wrong, &mut out);
     assert_eq!(refused, Err(NotOffered));
+}
+
+/// Sends on a simulated line, long after what was before; the bytes that come back and the silence before them.
+fn on_the_line(lane: &mut impl Lane, frame: &[u8]) -> (Vec<u8>, Duration) {
+    let port = fieldproof_link::PortIndex(0);
+    let at = lane.now() + Duration::from_millis(100);
+    let sent = lane.send(port, at, Transmission::bytes(frame)).unwrap();
+    let mut bytes = Vec::new();
+    let mut silence = Duration::ZERO;
+    while let Some(arrival) = lane.receive(sent.end + Duration::from_millis(100)).unwrap() {
+        let Reception::Character(Character { byte, spoilt }) = arrival.what else {
+            panic!("not a character: {arrival:?}");
+        };
+        assert!(!spoilt);
+        if bytes.is_empty() {
+            silence = arrival.at.since(sent.end + LINE.character_time());
+        }
+        bytes.push(byte);
+    }
+    (bytes, silence)
+}
+
+#[test]
+fn plays_on_a_simulated_line() {
+    let mut builder = Builder::new();
+    let port = builder.serial_line("inverter", LINE);
+    builder.device(Box::new(Inverter::new(1)), &[port]);
+    let mut lane = builder.build();
+    let (answer, silence) = on_the_line(&mut lane, b"\x01\x06\x25\x01\x00\x01\x12\xC6");
+    assert_eq!(answer, b"\x01\x06\x25\x01\x00\x01\x12\xC6");
+    assert!(silence >= LINE.silence_3_5() && silence < Duration::from_millis(5));
+    let (answer, _) = on_the_line(&mut lane, b"\x01\x03\x25\x20\x00\x01\x8E\xCC");
+    assert_eq!(answer, b"\x01\x03\x02\x00\x05\x78\x47");
+    let (answer, _) = on_the_line(&mut lane, b"\x01\x03\x25\x20\x00\x01\x8E\xCD");
+    assert_eq!(answer, b"");
+}
+
+/// The inverter and its description come from the same manual by two hands.
+#[test]
+fn inverter_is_what_its_description_claims() {
+    let text = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../fixtures/devices/teco-jn5-cm-can/teco-a510.registers"
+    ));
+    let registers = InverterRegisters::default();
+    let map = RegisterMap::parse(text).unwrap();
+    for claimed in map.registers() {
+        let register = claimed.address;
+        let read = registers.read(register, &Behaviour::CONFORMING);
+        assert!(read.is_ok(), "{register:04X}");
+        let highest = u16::try_from(claimed.high).unwrap();
+        let written = registers.check_write(register, highest).is_ok();
+        assert_eq!(
+            written,
+            claimed.access == Access::ReadWrite,
+            "{register:04X}"
+        );
+        if claimed.access == Access::ReadWrite {
+            assert_eq!(read.ok().map(i64::from), claimed.default, "{register:04X}");
+            let allowed = highest
+                .checked_add(1)
+                .map(|value| registers.check_write(register, value));
+            assert_ne!(allowed, Some(Ok(())), "{register:04X}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use fieldproof_link::Character;
+use fieldproof_link::{Character, Instant};
 use proptest::prelude::*;
 
 use super::script::{Script, hex, text};
@@ -168,12 +168,32 @@ fn what_it_did_not_hear_the_start_of_is_no_frame() {
 }
 
 #[test]
-fn restart_forgets_a_half_done_exchange() {
+fn request_while_it_is_busy_is_not_heard() {
     let mut drive = drive();
-    let now = fieldproof_link::Instant::from_nanos(1);
-    drive.slave.receive(now, Character::new(1));
-    drive.slave.restart();
-    assert_eq!(drive.slave.wake_at(), None);
+    let mut characters = interrupted_request(Duration::ZERO);
+    let mut second = interrupted_request(Duration::ZERO);
+    second[0].0 = drive.line().character_time() * 5;
+    characters.extend(second);
+    assert_eq!(drive.send_characters(&characters).len(), 1);
+}
+
+#[test]
+fn restart_forgets_a_half_done_exchange() {
+    let line = drive().line();
+    for woken in 0..3 {
+        let mut slave = drive().slave;
+        for (count, byte) in (1..).zip(hex("01 06 01 45 03 E8 99 5D")) {
+            let end = Instant::START + line.character_time() * count;
+            slave.receive(end, Character::new(byte));
+        }
+        // Still receiving, about to answer, answering.
+        for _ in 0..woken {
+            slave.wake(slave.wake_at().unwrap());
+        }
+        assert!(slave.wake_at().is_some());
+        slave.restart();
+        assert_eq!(slave.wake_at(), None);
+    }
 }
 
 /// Requests, and what a device without faults answers, CRC and all.

@@ -146,7 +146,9 @@ fn another_stations_answer_is_not_the_answer() {
     let mut tester = Tester::new();
     read_state(&mut tester.master, tester.now);
     tester.wake();
+    tester.now = tester.now + Duration::from_millis(60);
     tester.answer("20 03 02 00 00 04 43");
+    tester.wake();
     tester.answer("01 03 02 00 05 78 47");
     assert_eq!(tester.result(), Ok(Reply::Registers(vec![5])));
 }
@@ -161,6 +163,22 @@ fn silence_ends_in_no_answer_and_the_next_request() {
     assert_eq!(tester.result(), Ok(Reply::Registers(vec![5])));
     let (first, second) = (tester.sent[0].0, tester.sent[1].0);
     assert_eq!(second.since(first), LINE.character_time() * 8 + TIMEOUT);
+}
+
+#[test]
+fn answer_that_comes_too_late_is_not_that_to_the_next_request() {
+    let mut tester = Tester::new();
+    write_run(&mut tester.master, tester.now);
+    read_state(&mut tester.master, tester.now);
+    tester.wake();
+    tester.now = tester.now + TIMEOUT - Duration::from_micros(5_600);
+    tester.answer("01");
+    let end = tester.now;
+    assert_eq!(tester.result(), Err(Failure::NoAnswer));
+    tester.wake();
+    assert_eq!(tester.sent[1].0.since(end), LINE.silence_3_5());
+    tester.answer("01 03 02 00 05 78 47");
+    assert_eq!(tester.result(), Ok(Reply::Registers(vec![5])));
 }
 
 #[test]
