@@ -19,7 +19,7 @@ use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
 };
 use crate::modbus::{self, ModbusSlave, SpeedSign};
-pub use model::EncoderModel;
+use model::EncoderModel;
 use registers::EncoderRegisters;
 use shaft::Shaft;
 

@@ -2,17 +2,17 @@
 
 /// The shaft as the encoder sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct EncoderModel {
+pub(crate) struct EncoderModel {
     /// The position shown, in counts: turns above, the angle in the low [`EncoderModel::single_turn_bits`] bits.
-    pub position: u32,
+    pub(crate) position: u32,
     /// The speed of the shaft in 1/10000 rpm, positive clockwise.
-    pub speed_ten_thousandths_rpm: i32,
+    pub(crate) speed_ten_thousandths_rpm: i32,
     /// The temperature inside in 1/100 °C.
-    pub temperature_hundredths: i16,
+    pub(crate) temperature_hundredths: i16,
     /// Bits of the position that count within a turn, 8 to 16.
-    pub single_turn_bits: u8,
+    pub(crate) single_turn_bits: u8,
     /// Whether turning counter-clockwise counts up.
-    pub counter_clockwise: bool,
+    pub(crate) counter_clockwise: bool,
 }
 
 impl Default for EncoderModel {
@@ -30,7 +30,7 @@ impl Default for EncoderModel {
 
 impl EncoderModel {
     /// The speed as both ports show it, in 1/10000 rpm: negative while the position counts down.
-    pub fn shown_speed(&self) -> i32 {
+    pub(crate) fn shown_speed(&self) -> i32 {
         if self.counter_clockwise {
             self.speed_ten_thousandths_rpm.saturating_neg()
         } else {
@@ -39,19 +39,19 @@ impl EncoderModel {
     }
 
     /// Turns the shaft so that `speed`, in 1/10000 rpm, is shown.
-    pub fn set_shown_speed(&mut self, speed: i32) {
+    pub(crate) fn set_shown_speed(&mut self, speed: i32) {
         self.speed_ten_thousandths_rpm = speed;
         self.speed_ten_thousandths_rpm = self.shown_speed();
     }
 
     /// The angle within the turn in 1/65536 of it.
-    pub fn angle(&self) -> u16 {
+    pub(crate) fn angle(&self) -> u16 {
         let [_, _, high, low] = (self.position << self.coarseness()).to_be_bytes();
         u16::from_be_bytes([high, low])
     }
 
     /// Makes the present angle `angle`, in 1/65536 turn, and keeps the turns.
-    pub fn set_angle(&mut self, angle: u16) {
+    pub(crate) fn set_angle(&mut self, angle: u16) {
         let bits = self.split();
         let turns = self.position >> bits;
         self.position = (turns << bits) | (u32::from(angle) >> self.coarseness());
@@ -59,7 +59,7 @@ impl EncoderModel {
 
     /// Splits the 32 bits of the position another way: `bits` (8 to 16) for the angle. The turns stay as far as there is
     /// room for them, the angle as far as it can be told.
-    pub fn set_single_turn_bits(&mut self, bits: u8) {
+    pub(crate) fn set_single_turn_bits(&mut self, bits: u8) {
         let turns = self.position >> self.split();
         let angle = self.angle();
         self.single_turn_bits = bits;

@@ -9,9 +9,9 @@ use super::model::EncoderModel;
 use crate::modbus::{AddressChangeReply, Behaviour, Command, Exception, Registers, SpeedSign};
 
 /// The address the encoder leaves the factory with.
-pub const ADDRESS: u8 = 0x20;
+pub(crate) const ADDRESS: u8 = 0x20;
 /// How its line is set when it leaves the factory.
-pub const LINE: SerialSettings = line(9_600);
+pub(crate) const LINE: SerialSettings = line(9_600);
 
 const VERSION: u16 = 0x0000;
 const SLAVE_ADDRESS: u16 = 0x0001;
@@ -67,9 +67,9 @@ const fn line(baud: u32) -> SerialSettings {
 
 /// The registers, and the model that they show. Settings survive power-off.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct EncoderRegisters {
+pub(crate) struct EncoderRegisters {
     /// What the encoder measures; the CAN side shows the same.
-    pub model: EncoderModel,
+    pub(crate) model: EncoderModel,
     version: u16,
     address: u8,
     baud_code: u16,
@@ -86,7 +86,7 @@ impl Default for EncoderRegisters {
 
 impl EncoderRegisters {
     /// As it leaves the factory, but with the address `address`.
-    pub fn new(address: u8) -> EncoderRegisters {
+    pub(crate) fn new(address: u8) -> EncoderRegisters {
         EncoderRegisters {
             model: EncoderModel::default(),
             version: FACTORY_VERSION,
@@ -102,7 +102,7 @@ impl EncoderRegisters {
     ///
     /// # Errors
     /// [`NotOffered`]: any other address.
-    pub fn set_address(&mut self, address: i64) -> Result<(), NotOffered> {
+    pub(crate) fn set_address(&mut self, address: i64) -> Result<(), NotOffered> {
         self.address = unicast(address).ok_or(NotOffered)?;
         Ok(())
     }
@@ -111,7 +111,7 @@ impl EncoderRegisters {
     ///
     /// # Errors
     /// [`NotOffered`]: not one of the nine rates.
-    pub fn set_baud(&mut self, baud: i64) -> Result<(), NotOffered> {
+    pub(crate) fn set_baud(&mut self, baud: i64) -> Result<(), NotOffered> {
         let code = BAUD_CODES
             .iter()
             .find(|(_, rate)| i64::from(*rate) == baud)
@@ -126,7 +126,7 @@ impl EncoderRegisters {
     ///
     /// # Errors
     /// [`NotOffered`]: no such name, or a value that it cannot have.
-    pub fn set_process_value(&mut self, name: &str, value: i64) -> Result<(), NotOffered> {
+    pub(crate) fn set_process_value(&mut self, name: &str, value: i64) -> Result<(), NotOffered> {
         match name {
             "position" => self.model.position = narrow(value)?,
             "speed" => self.model.set_shown_speed(narrow(value)?),
