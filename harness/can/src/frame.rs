@@ -60,6 +60,17 @@ impl Frame {
         })
     }
 
+    /// A remote frame that asks for a length that is known when the program is built; more than 8 does not compile.
+    pub fn remote_of<const LEN: u8>(id: impl Into<Id>) -> Frame {
+        const { assert!(LEN <= 8, "a classic frame has at most 8 bytes") };
+        Frame {
+            id: id.into(),
+            remote: true,
+            len: LEN,
+            data: [0; 8],
+        }
+    }
+
     /// The identifier.
     pub fn id(&self) -> Id {
         self.id
@@ -132,6 +143,7 @@ mod tests {
         assert_eq!(Frame::data(id, &[0; 9]), None);
         assert_eq!(Frame::remote(id, 9), None);
         assert_eq!(Frame::data(id, &[1, 2]), Some(Frame::of(id, [1, 2])));
+        assert_eq!(Frame::remote(id, 3), Some(Frame::remote_of::<3>(id)));
         assert_eq!(Frame::data(id, &[7; 8]), Some(Frame::of_eight(id, [7; 8])));
     }
 }

@@ -10,6 +10,7 @@ mod bounded;
 
 pub mod canopen;
 pub mod modbus;
+pub mod ssi;
 mod violation;
 
 pub use violation::{Rule, Violation};

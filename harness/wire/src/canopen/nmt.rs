@@ -4,7 +4,7 @@ use std::fmt;
 
 use fieldproof_can::Frame;
 
-use super::data_frame::bytes_of;
+use super::data_frame::broadcast;
 use super::{NodeId, Service, cob_id};
 use crate::Violation;
 use crate::violation::exactly;
@@ -137,7 +137,7 @@ impl NmtMessage {
     /// # Errors
     /// [`Violation`]: not on 000h, a remote frame, not 2 bytes, or a node-ID over 127.
     pub fn parse(frame: &Frame) -> Result<NmtMessage, Violation> {
-        let (_, bytes) = bytes_of(frame, Service::Nmt)?;
+        let bytes = broadcast(frame, Service::Nmt)?;
         let [command, node] = exactly(bytes)?;
         let node = match node {
             0 => None,
