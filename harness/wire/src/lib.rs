@@ -9,6 +9,7 @@
 mod bounded;
 
 pub mod canopen;
+pub mod describe;
 pub mod modbus;
 pub mod ssi;
 mod violation;

@@ -88,9 +88,9 @@ mod tests {
     #[test]
     fn what_is_not_a_frame_says_why() {
         let cases = [
-            (0, "length: found 0 bits at byte 0, expected 34 bits"),
-            (33, "length: found 33 bits at byte 33, expected 34 bits"),
-            (35, "length: found 35 bits at byte 34, expected 34 bits"),
+            (0, "length: found 0 bits, expected 34 bits"),
+            (33, "length: found 33 bits, expected 34 bits"),
+            (35, "length: found 35 bits, expected 34 bits"),
         ];
         for (len, message) in cases {
             let violation = SsiFrame::parse(&vec![true; len]).unwrap_err();

@@ -41,7 +41,6 @@ impl fmt::Display for Rule {
 
 /// Bytes that break a rule of their protocol.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{rule}: found {found} at byte {offset}, expected {expected}")]
 pub struct Violation {
     /// Which rule.
     pub rule: Rule,
@@ -74,8 +73,8 @@ impl Violation {
         Violation::new(
             Rule::Length,
             found.min(expected),
-            format!("{found} bytes"),
-            format!("{expected} bytes"),
+            plural(found, "byte"),
+            plural(expected, "byte"),
         )
     }
 
@@ -97,6 +96,33 @@ impl Violation {
     ) -> Violation {
         Violation::new(rule, offset, format!("{found:02X}h"), expected)
     }
+}
+
+impl fmt::Display for Violation {
+    /// `range: found 126 at byte 3, expected 1 to 125`; without the place where it says nothing new.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Violation {
+            rule,
+            offset,
+            found,
+            expected,
+        } = self;
+        match rule {
+            Rule::Length | Rule::Identifier | Rule::FrameKind => {
+                write!(f, "{rule}: found {found}, expected {expected}")
+            }
+            _ => write!(
+                f,
+                "{rule}: found {found} at byte {offset}, expected {expected}"
+            ),
+        }
+    }
+}
+
+/// `1 byte`, `2 bytes`
+pub(crate) fn plural(count: usize, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{ending}")
 }
 
 /// `bytes` as an array, if it is as long.

@@ -6,7 +6,7 @@ use super::{NodeId, Service, identify};
 use crate::{Rule, Violation};
 
 /// The bytes of `frame`, which must be a data frame on the one identifier of `service`.
-pub(super) fn broadcast(frame: &Frame, service: Service) -> Result<&[u8], Violation> {
+pub(crate) fn broadcast(frame: &Frame, service: Service) -> Result<&[u8], Violation> {
     match frame.standard_id().and_then(identify) {
         Some((found, None)) if found == service => data_of(frame),
         _ => Err(wrong_identifier(frame, service)),
@@ -14,12 +14,12 @@ pub(super) fn broadcast(frame: &Frame, service: Service) -> Result<&[u8], Violat
 }
 
 /// The node and the bytes of `frame`, which must be a data frame on an identifier of `service`.
-pub(super) fn from_node(frame: &Frame, service: Service) -> Result<(NodeId, &[u8]), Violation> {
+pub(crate) fn from_node(frame: &Frame, service: Service) -> Result<(NodeId, &[u8]), Violation> {
     Ok((node_of(frame, service)?, data_of(frame)?))
 }
 
 /// The node of `frame`, which must have an identifier of `service`.
-pub(super) fn node_of(frame: &Frame, service: Service) -> Result<NodeId, Violation> {
+pub(crate) fn node_of(frame: &Frame, service: Service) -> Result<NodeId, Violation> {
     match frame.standard_id().and_then(identify) {
         Some((found, Some(node))) if found == service => Ok(node),
         _ => Err(wrong_identifier(frame, service)),

@@ -211,15 +211,12 @@ mod tests {
         let cases = [
             (
                 "080#",
-                "identifier: found 080h at byte 0, expected an identifier of EMCY",
+                "identifier: found 080h, expected an identifier of EMCY",
             ),
-            (
-                "081#0000",
-                "length: found 2 bytes at byte 2, expected 8 bytes",
-            ),
+            ("081#0000", "length: found 2 bytes, expected 8 bytes"),
             (
                 "081#R8",
-                "kind of frame: found a remote frame at byte 0, expected a data frame",
+                "kind of frame: found a remote frame, expected a data frame",
             ),
         ];
         for (text, message) in cases {

@@ -114,14 +114,11 @@ mod tests {
     #[test]
     fn what_is_not_a_message_says_why() {
         let cases = [
-            ("701#", "length: found 0 bytes at byte 0, expected 1 bytes"),
-            (
-                "701#0505",
-                "length: found 2 bytes at byte 1, expected 1 bytes",
-            ),
+            ("701#", "length: found 0 bytes, expected 1 byte"),
+            ("701#0505", "length: found 2 bytes, expected 1 byte"),
             (
                 "700#05",
-                "identifier: found 700h at byte 0, expected an identifier of error control",
+                "identifier: found 700h, expected an identifier of error control",
             ),
         ];
         for (text, message) in cases {

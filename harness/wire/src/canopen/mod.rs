@@ -2,7 +2,7 @@
 
 mod abort_code;
 pub mod connection_set;
-mod data_frame;
+pub(crate) mod data_frame;
 pub mod emergency;
 pub mod error_control;
 mod identifier_entry;

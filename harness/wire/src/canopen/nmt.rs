@@ -186,24 +186,18 @@ mod tests {
         let cases = [
             (
                 "001#0101",
-                "identifier: found 001h at byte 0, expected an identifier of NMT",
+                "identifier: found 001h, expected an identifier of NMT",
             ),
             (
                 "00000000#0101",
-                "identifier: found 00000000h at byte 0, expected an identifier of NMT",
+                "identifier: found 00000000h, expected an identifier of NMT",
             ),
             (
                 "000#R2",
-                "kind of frame: found a remote frame at byte 0, expected a data frame",
+                "kind of frame: found a remote frame, expected a data frame",
             ),
-            (
-                "000#01",
-                "length: found 1 bytes at byte 1, expected 2 bytes",
-            ),
-            (
-                "000#010101",
-                "length: found 3 bytes at byte 2, expected 2 bytes",
-            ),
+            ("000#01", "length: found 1 byte, expected 2 bytes"),
+            ("000#010101", "length: found 3 bytes, expected 2 bytes"),
             ("000#0180", "range: found 128 at byte 1, expected 0 to 127"),
         ];
         for (text, message) in cases {

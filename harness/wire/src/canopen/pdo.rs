@@ -348,7 +348,7 @@ mod tests {
         assert_eq!(mapping.pack(&[0]), None);
         assert_eq!(
             mapping.unpack(&data[..5]).unwrap_err().to_string(),
-            "length: found 5 bytes at byte 5, expected 6 bytes"
+            "length: found 5 bytes, expected 6 bytes"
         );
     }
 
@@ -357,7 +357,7 @@ mod tests {
         let long = [0x6063_0020, 0x6063_0020, 0x6041_0010];
         assert_eq!(
             Mapping::parse(&long).unwrap_err().to_string(),
-            "length: found 80 bits at byte 12, expected at most 64 bits"
+            "length: found 80 bits, expected at most 64 bits"
         );
         assert_eq!(
             Mapping::parse(&[0x6063_0020, 0]).unwrap_err().to_string(),

@@ -105,13 +105,10 @@ mod tests {
         let cases = [
             ("080#00", "range: found 0 at byte 0, expected 1 to 240"),
             ("080#F1", "range: found 241 at byte 0, expected 1 to 240"),
-            (
-                "080#0102",
-                "length: found 2 bytes at byte 1, expected 1 bytes",
-            ),
+            ("080#0102", "length: found 2 bytes, expected 1 byte"),
             (
                 "081#",
-                "identifier: found 081h at byte 0, expected an identifier of SYNC",
+                "identifier: found 081h, expected an identifier of SYNC",
             ),
         ];
         for (text, message) in cases {

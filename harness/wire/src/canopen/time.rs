@@ -149,10 +149,7 @@ mod tests {
     #[test]
     fn what_is_not_a_message_says_why() {
         let cases = [
-            (
-                "100#0000",
-                "length: found 2 bytes at byte 2, expected 6 bytes",
-            ),
+            ("100#0000", "length: found 2 bytes, expected 6 bytes"),
             (
                 "100#005C26050000",
                 "range: found 86400000 at byte 0, expected 0 to 86399999",

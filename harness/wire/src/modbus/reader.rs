@@ -1,5 +1,6 @@
 //! Reading bytes from the front.
 
+use crate::violation::plural;
 use crate::{Rule, Violation};
 
 /// Bytes and how many of them have been read.
@@ -28,8 +29,8 @@ impl<'a> Reader<'a> {
             return Err(Violation::new(
                 Rule::Length,
                 self.bytes.len(),
-                format!("{} bytes", self.bytes.len()),
-                format!("at least {} bytes", self.at + count),
+                plural(self.bytes.len(), "byte"),
+                format!("at least {}", plural(self.at + count, "byte")),
             ));
         };
         self.at += count;

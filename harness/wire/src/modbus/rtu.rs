@@ -8,6 +8,7 @@
 
 use super::crc::{crc16, crc16_bytes};
 use super::pdu::MAX_PDU_LEN;
+use crate::violation::plural;
 use crate::{Rule, Violation};
 
 /// The shortest ADU, in bytes.
@@ -94,7 +95,7 @@ impl<'a> RtuAdu<'a> {
             return Err(Violation::new(
                 Rule::Length,
                 bytes.len().min(MAX_ADU_LEN),
-                format!("{} bytes", bytes.len()),
+                plural(bytes.len(), "byte"),
                 format!("{MIN_ADU_LEN} to {MAX_ADU_LEN} bytes"),
             ));
         }
@@ -140,17 +141,14 @@ mod tests {
         let mut stale = REQUEST;
         stale[5] = 3;
         let cases: [(&[u8], &str); 4] = [
-            (
-                &[],
-                "length: found 0 bytes at byte 0, expected 4 to 256 bytes",
-            ),
+            (&[], "length: found 0 bytes, expected 4 to 256 bytes"),
             (
                 &REQUEST[..3],
-                "length: found 3 bytes at byte 3, expected 4 to 256 bytes",
+                "length: found 3 bytes, expected 4 to 256 bytes",
             ),
             (
                 &[0; 257],
-                "length: found 257 bytes at byte 256, expected 4 to 256 bytes",
+                "length: found 257 bytes, expected 4 to 256 bytes",
             ),
             (&stale, "checksum: found 8400 at byte 6, expected 45C0"),
         ];

@@ -9,6 +9,7 @@
 //! | 7.. | PDU, 1 to 253 bytes |
 
 use super::pdu::MAX_PDU_LEN;
+use crate::violation::plural;
 use crate::{Rule, Violation};
 
 /// Bytes of the header, the unit among them.
@@ -112,7 +113,7 @@ impl<'a> TcpAdu<'a> {
             Violation::new(
                 Rule::Length,
                 bytes.len().min(MAX_ADU_LEN),
-                format!("{} bytes", bytes.len()),
+                plural(bytes.len(), "byte"),
                 format!("{} to {MAX_ADU_LEN} bytes", HEADER_LEN + 1),
             )
         };
@@ -171,11 +172,11 @@ mod tests {
         let cases: [(&[u8], &str); 4] = [
             (
                 &REQUEST[..7],
-                "length: found 7 bytes at byte 7, expected 8 to 260 bytes",
+                "length: found 7 bytes, expected 8 to 260 bytes",
             ),
             (
                 &[0; 261],
-                "length: found 261 bytes at byte 260, expected 8 to 260 bytes",
+                "length: found 261 bytes, expected 8 to 260 bytes",
             ),
             (
                 &with(3, 1),

@@ -3,6 +3,7 @@
 use fieldproof_can::Frame;
 
 use super::{IdentityPart, node_byte, number_of, parse_node_byte, with_number};
+use crate::canopen::data_frame::broadcast;
 use crate::canopen::{NodeId, Service, cob_id};
 use crate::violation::{exactly, reserved_is_zero};
 use crate::{Rule, Violation};
@@ -206,10 +207,7 @@ impl Request {
     /// # Errors
     /// [`Violation`]: not on 7E5h, a remote frame, or what [`Request::parse_bytes`] says.
     pub fn parse(frame: &Frame) -> Result<Request, Violation> {
-        Request::parse_bytes(crate::canopen::data_frame::broadcast(
-            frame,
-            Service::LssRequest,
-        )?)
+        Request::parse_bytes(broadcast(frame, Service::LssRequest)?)
     }
 }
 
@@ -302,12 +300,9 @@ mod tests {
         let cases = [
             (
                 "7E4#0401000000000000",
-                "identifier: found 7E4h at byte 0, expected an identifier of LSS request",
+                "identifier: found 7E4h, expected an identifier of LSS request",
             ),
-            (
-                "7E5#0401",
-                "length: found 2 bytes at byte 2, expected 8 bytes",
-            ),
+            ("7E5#0401", "length: found 2 bytes, expected 8 bytes"),
             (
                 "7E5#0402000000000000",
                 "range: found 2 at byte 1, expected 0 to 1",

@@ -5,6 +5,7 @@ use std::fmt;
 use fieldproof_can::Frame;
 
 use super::{IdentityPart, node_byte, number_of, parse_node_byte, with_number};
+use crate::canopen::data_frame::broadcast;
 use crate::canopen::{NodeId, Service, cob_id};
 use crate::violation::{exactly, reserved_is_zero};
 use crate::{Rule, Violation};
@@ -140,10 +141,7 @@ impl Response {
     /// # Errors
     /// [`Violation`]: not on 7E4h, a remote frame, or what [`Response::parse_bytes`] says.
     pub fn parse(frame: &Frame) -> Result<Response, Violation> {
-        Response::parse_bytes(crate::canopen::data_frame::broadcast(
-            frame,
-            Service::LssResponse,
-        )?)
+        Response::parse_bytes(broadcast(frame, Service::LssResponse)?)
     }
 }
 
@@ -188,11 +186,11 @@ mod tests {
         let cases = [
             (
                 "7E5#1100000000000000",
-                "identifier: found 7E5h at byte 0, expected an identifier of LSS response",
+                "identifier: found 7E5h, expected an identifier of LSS response",
             ),
             (
                 "7E4#11000000000000",
-                "length: found 7 bytes at byte 7, expected 8 bytes",
+                "length: found 7 bytes, expected 8 bytes",
             ),
             (
                 "7E4#0400000000000000",

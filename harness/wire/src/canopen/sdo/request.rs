@@ -346,10 +346,7 @@ mod tests {
                 &[0xE0, 0, 0, 0, 0, 0, 0, 0],
                 "command: found E0h at byte 0, expected a client command specifier from 0 to 6 in bits 7..5",
             ),
-            (
-                &[0x40, 0, 0, 0],
-                "length: found 4 bytes at byte 4, expected 8 bytes",
-            ),
+            (&[0x40, 0, 0, 0], "length: found 4 bytes, expected 8 bytes"),
             (
                 &[0xA0, 0, 0x10, 0, 128, 0, 0, 0],
                 "range: found 128 at byte 4, expected 1 to 127",

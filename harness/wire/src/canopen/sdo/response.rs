@@ -334,7 +334,7 @@ mod tests {
             ),
             (
                 &[0x60, 0, 0x10, 0, 0, 0, 0, 0, 0],
-                "length: found 9 bytes at byte 8, expected 8 bytes",
+                "length: found 9 bytes, expected 8 bytes",
             ),
         ];
         for (bytes, message) in cases {

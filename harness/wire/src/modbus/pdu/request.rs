@@ -7,6 +7,7 @@ use super::{
 };
 use crate::modbus::FunctionCode;
 use crate::modbus::reader::Reader;
+use crate::violation::plural;
 use crate::{Rule, Violation};
 
 /// A request PDU.
@@ -331,7 +332,7 @@ pub(super) fn parse_diagnostics_data(r: &mut Reader<'_>) -> Result<Values<u16, 1
         return Err(Violation::new(
             Rule::Length,
             offset + bytes.len(),
-            format!("{} bytes of data", bytes.len()),
+            format!("{} of data", plural(bytes.len(), "byte")),
             "an even number",
         ));
     }
@@ -414,11 +415,11 @@ mod tests {
     #[rustfmt::skip]
     fn what_is_not_a_request_says_why() {
         let cases: [(&[u8], &str); 15] = [
-            (&[], "length: found 0 bytes at byte 0, expected at least 1 bytes"),
+            (&[], "length: found 0 bytes, expected at least 1 byte"),
             (&[0x00], "command: found 00h at byte 0, expected a function code from 01h to 7Fh"),
             (&[0x83, 2], "command: found 83h at byte 0, expected a function code from 01h to 7Fh"),
-            (&[0x03, 0, 0, 0], "length: found 4 bytes at byte 4, expected at least 5 bytes"),
-            (&[0x03, 0, 0, 0, 1, 0], "length: found 6 bytes at byte 5, expected 5 bytes"),
+            (&[0x03, 0, 0, 0], "length: found 4 bytes, expected at least 5 bytes"),
+            (&[0x03, 0, 0, 0, 1, 0], "length: found 6 bytes, expected 5 bytes"),
             (&[0x03, 0, 0, 0, 0], "range: found 0 at byte 3, expected 1 to 125"),
             (&[0x04, 0, 0, 0, 126], "range: found 126 at byte 3, expected 1 to 125"),
             (&[0x01, 0, 0, 0x07, 0xD1], "range: found 2001 at byte 3, expected 1 to 2000"),
@@ -428,7 +429,7 @@ mod tests {
             (&[0x10, 0, 0, 0, 1, 3, 0, 0, 0], "count: found 3 at byte 5, expected 2"),
             (&[0x17, 0, 0, 0, 1, 0, 0, 0, 122, 244], "range: found 122 at byte 7, expected 1 to 121"),
             (&[0x2B, 0x0E, 5, 0], "range: found 5 at byte 2, expected 1 to 4"),
-            (&[0x08, 0, 0, 1], "length: found 1 bytes of data at byte 4, expected an even number"),
+            (&[0x08, 0, 0, 1], "length: found 1 byte of data, expected an even number"),
         ];
         for (pdu, message) in cases {
             assert_eq!(Request::parse(pdu).unwrap_err().to_string(), message);

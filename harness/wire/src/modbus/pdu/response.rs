@@ -337,11 +337,11 @@ mod tests {
     fn what_is_not_a_response_says_why() {
         let no_code = "expected a function code from 01h to 7Fh, or that of an exception to one";
         let cases: [(&[u8], &str); 10] = [
-            (&[], "length: found 0 bytes at byte 0, expected at least 1 bytes"),
+            (&[], "length: found 0 bytes, expected at least 1 byte"),
             (&[0x00], &format!("command: found 00h at byte 0, {no_code}")),
             (&[0x80, 1], &format!("command: found 80h at byte 0, {no_code}")),
-            (&[0x83], "length: found 1 bytes at byte 1, expected at least 2 bytes"),
-            (&[0x83, 2, 0], "length: found 3 bytes at byte 2, expected 2 bytes"),
+            (&[0x83], "length: found 1 byte, expected at least 2 bytes"),
+            (&[0x83, 2, 0], "length: found 3 bytes, expected 2 bytes"),
             (&[0x03, 2, 0], "count: found 2 at byte 1, expected 1"),
             (&[0x03, 1, 0], "count: found 1 at byte 1, expected an even number"),
             (&[0x03, 0], "range: found 0 at byte 1, expected 1 to 125"),
