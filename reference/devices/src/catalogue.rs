@@ -4,6 +4,7 @@ use std::fmt;
 
 use fieldproof_link::{Participant, SerialSettings};
 
+use crate::teco_jn5_cm_can::Behaviour as GatewayBehaviour;
 use crate::{canopen, modbus};
 
 /// A kind of reference device.
@@ -96,6 +97,8 @@ pub struct Behaviour {
     pub modbus: modbus::Behaviour,
     /// Whether the speed that an encoder shows on CAN carries its sign.
     pub speed_sign_on_can: modbus::SpeedSign,
+    /// A gateway between the two.
+    pub gateway: GatewayBehaviour,
 }
 
 /// The device has no fault or variant of this name.

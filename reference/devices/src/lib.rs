@@ -13,17 +13,24 @@ mod liaomiao_encoder;
 pub mod modbus;
 #[cfg(test)]
 mod script;
+mod teco_jn5_cm_can;
 
 pub use catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
 };
+
+pub use teco_jn5_cm_can::Behaviour as GatewayBehaviour;
 
 #[cfg(doc)]
 use fieldproof_link::Participant;
 
 /// Every kind of reference device, by name.
 pub fn kinds() -> &'static [DeviceKind] {
-    &[kinco_servo::KIND, liaomiao_encoder::KIND]
+    &[
+        kinco_servo::KIND,
+        liaomiao_encoder::KIND,
+        teco_jn5_cm_can::KIND,
+    ]
 }
 
 /// The kind called `name`, if there is one.

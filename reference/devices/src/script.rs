@@ -5,7 +5,7 @@
 //! | `> 601#4063600000000000` | a frame to port 0; `#R` for a remote frame |
 //! | `< 581#4363600013D1FFFF` | a frame from port 0 |
 //! | `>> 20 03 00 00 00 01 82 BB` | characters to port 1, without gaps |
-//! | `<< 20 03 02 0F B4 01 C4` | characters from port 1 |
+//! | `<< 20 03 02 0F B4 01 C4` | characters from port 1; with a companion there, `>>` is what that answers |
 //! | `wait 10 ms` | time passes; 1 ms passes after a frame, 100 ms after characters |
 //! | `power off`, `power on` | a stimulus |
 //! | `set 6063:00 = -12013` | a process value |
@@ -56,8 +56,10 @@ impl Script {
 
     /// Does what `text` says, and tells what happened in the same form.
     pub(crate) fn play(&mut self, text: &str) -> String {
-        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
-            if !line.starts_with('<') {
+        for line in lines(text) {
+            let told =
+                line.starts_with('<') || (self.companion.is_some() && line.starts_with(">>"));
+            if !told {
                 writeln!(self.told, "{line}").unwrap();
                 self.act(line);
             }
@@ -211,8 +213,13 @@ fn deliver(
     }
 }
 
+/// What `script` makes of a device of `kind`.
+pub(crate) fn without_fault(kind: &DeviceKind, script: &str) -> String {
+    Script::new(kind, &Settings::default()).play(script)
+}
+
 /// What `script` makes of a device of `kind` with one fault.
-pub(crate) fn with_fault(kind: &DeviceKind, fault: &str, script: &str) -> String {
+fn with_fault(kind: &DeviceKind, fault: &str, script: &str) -> String {
     let settings = Settings {
         fault: Some(fault.to_owned()),
         ..Settings::default()
@@ -222,35 +229,40 @@ pub(crate) fn with_fault(kind: &DeviceKind, fault: &str, script: &str) -> String
 
 /// Plays `script`, which must come out as it is written.
 pub(crate) fn conforms(kind: &DeviceKind, script: &str) {
-    let told = Script::new(kind, &Settings::default()).play(script);
-    assert_same(&told, script);
+    assert_same(&without_fault(kind, script), script);
 }
 
 /// A fault changes the outcome of `script`, on which a device without it comes out as written, in exactly these lines:
 /// the first of a pair becomes the second, which may be no line or several.
 pub(crate) fn departs(kind: &DeviceKind, fault: &str, script: &str, changes: &[(&str, &str)]) {
     conforms(kind, script);
+    assert_same(
+        &with_fault(kind, fault, script),
+        &departures(script, changes),
+    );
+}
+
+/// `script` with these lines changed, in this order.
+pub(crate) fn departures(script: &str, changes: &[(&str, &str)]) -> String {
     let mut expected = String::new();
     let mut changes = changes.iter().peekable();
-    for line in script
-        .lines()
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-    {
+    for line in lines(script) {
         let changed = changes.next_if(|(old, _)| *old == line);
         let line = changed.map_or(line, |(_, new)| new);
         writeln!(expected, "{line}").unwrap();
     }
     assert_eq!(changes.next(), None, "never reached");
-    assert_same(&with_fault(kind, fault, script), &expected);
+    expected
 }
 
-fn assert_same(told: &str, expected: &str) {
-    let lines = |text: &str| {
-        let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-        lines.map(|line| format!("{line}\n")).collect::<String>()
-    };
-    assert_eq!(lines(told), lines(expected), "\n--- it was\n{told}");
+/// Both say the same, indentation and empty lines apart.
+pub(crate) fn assert_same(told: &str, expected: &str) {
+    let plain = |text| lines(text).collect::<Vec<_>>().join("\n");
+    assert_eq!(plain(told), plain(expected), "\n--- it was\n{told}");
+}
+
+fn lines(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().map(str::trim).filter(|line| !line.is_empty())
 }
 
 fn frame(text: &str) -> Frame {

@@ -178,6 +178,10 @@ impl Slave {
         self.queue.flush(now, port, out);
     }
 
+    pub(crate) fn is_operational(&self) -> bool {
+        self.state == State::Operational
+    }
+
     /// The device has set values itself.
     pub(crate) fn values_changed(&mut self) {
         self.notice_changes();
@@ -365,7 +369,10 @@ impl Slave {
         match application.writing(address, value) {
             Answer::Now => {}
             Answer::Refused(abort) => return Err(abort),
-            Answer::Later => return Ok(false),
+            Answer::Later => {
+                self.objects.set(address, value);
+                return Ok(false);
+            }
         }
         for address in [Some(address), self.twin(address)].into_iter().flatten() {
             self.objects.set(address, value);
