@@ -6,7 +6,8 @@
 
 pub mod canopen;
 pub mod catalogue;
-pub mod huacheng_ssts1;
+mod drive;
+mod huacheng_ssts1;
 pub mod inverter;
 mod kinco_servo;
 mod liaomiao_encoder;
@@ -27,6 +28,7 @@ use fieldproof_link::Participant;
 /// Every kind of reference device, by name.
 pub fn kinds() -> &'static [DeviceKind] {
     &[
+        huacheng_ssts1::KIND,
         kinco_servo::KIND,
         liaomiao_encoder::KIND,
         teco_jn5_cm_can::KIND,

@@ -41,6 +41,10 @@ pub struct Behaviour {
     pub pdo_in_pre_operational: bool,
     /// A synchronous TPDO leaves one SYNC after the one it was due with.
     pub tpdo_one_sync_late: bool,
+    /// The toggle bit alternates in the answers of guarding.
+    pub guarding_toggles: bool,
+    /// Clearing bit 30 of 1005h ends the production of SYNC.
+    pub sync_can_be_stopped: bool,
     /// When a new node-ID takes effect.
     pub node_activation: NodeActivation,
     /// The command specifier of the answer to inquire revision number.
@@ -105,6 +109,8 @@ impl Default for Behaviour {
             sdo_in_stopped: false,
             pdo_in_pre_operational: false,
             tpdo_one_sync_late: false,
+            guarding_toggles: true,
+            sync_can_be_stopped: true,
             node_activation: NodeActivation::AtReset,
             lss_revision_specifier: 0x5C,
         }

@@ -74,7 +74,7 @@ impl Slave {
             return;
         }
         let toggle = self.error_control.toggle;
-        self.error_control.toggle = !toggle;
+        self.error_control.toggle = !toggle && self.behaviour.guarding_toggles;
         let at = now + self.turnaround();
         self.send_state(at, u8::from(toggle) << 7);
         let number = |address| u64::from(self.objects.number(address).unwrap_or(0));

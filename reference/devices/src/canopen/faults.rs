@@ -120,3 +120,19 @@ pub(crate) const MAPPING_ENTRY_BYTE_ORDER: Fault = Fault {
     caught_by: "pdo",
     apply: |behaviour| behaviour.canopen.mapping_entry_big_endian = true,
 };
+
+pub(crate) const GUARDING_TOGGLE_STUCK: Fault = Fault {
+    name: "guarding-toggle-stuck",
+    breaks: "CiA 301: node guarding protocol, toggle bit",
+    words: "answers every guarding request with the toggle bit 0",
+    caught_by: "error-control",
+    apply: |behaviour| behaviour.canopen.guarding_toggles = false,
+};
+
+pub(crate) const SYNC_NOT_STOPPED: Fault = Fault {
+    name: "sync-not-stopped",
+    breaks: "CiA 301: object 1005h, bit 30",
+    words: "goes on producing SYNC when bit 30 of 1005h is cleared",
+    caught_by: "sync",
+    apply: |behaviour| behaviour.canopen.sync_can_be_stopped = false,
+};

@@ -50,7 +50,9 @@ impl Slave {
         let low = |cob_id: u32| u16::try_from(cob_id & 0x7FF).ok();
         self.sync.identifier = cob_id.and_then(low);
         self.sync.period = Duration::from_micros(u64::from(period));
-        let produces = cob_id.is_some_and(|cob_id| cob_id & PRODUCES != 0) && period != 0;
+        let asked = cob_id.is_some_and(|cob_id| cob_id & PRODUCES != 0);
+        let goes_on = self.sync.next.is_some() && !self.behaviour.sync_can_be_stopped;
+        let produces = (asked || goes_on) && period != 0;
         self.sync.next = produces.then(|| now + self.sync.period);
     }
 

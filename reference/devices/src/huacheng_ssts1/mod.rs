@@ -1,3 +1,239 @@
-//! The Huacheng SSTS1 servo drive.
+//! A Huacheng SSTS1 servo drive: port 0 on CAN (1 Mbit/s, node 1), port 1 on a serial line (19200 8E1, address 1).
 
-pub mod registers;
+pub(crate) mod registers;
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use fieldproof_dictionary::{Dictionary, eds};
+use fieldproof_link::{
+    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+};
+
+use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
+use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault};
+use crate::drive::Drive;
+use crate::modbus::{self, ModbusSlave};
+use registers::DriveRegisters;
+
+const NODE: u8 = 1;
+const BIT_RATE: u32 = 1_000_000;
+const BIT_RATES: &[u32] = &[
+    1_000_000, 800_000, 500_000, 250_000, 125_000, 50_000, 20_000,
+];
+const CAN: usize = 0;
+const SERIAL: usize = 1;
+
+/// What can be built.
+pub(crate) const KIND: DeviceKind = DeviceKind {
+    name: "huacheng-ssts1",
+    title: "Huacheng SSTS1 low-voltage servo drive",
+    ports: &[
+        PortKind {
+            role: "can",
+            medium: Medium::Can { bit_rate: BIT_RATE },
+        },
+        PortKind {
+            role: "serial",
+            medium: Medium::Serial(registers::LINE),
+        },
+    ],
+    faults: &[
+        faults::ABORT_CODE_WRONG,
+        faults::ABORT_NAMES_ANOTHER_OBJECT,
+        faults::BOOT_UP_MISSING,
+        faults::HEARTBEAT_STATE_WRONG,
+        faults::TPDO_ONE_SYNC_LATE,
+        faults::TOGGLE_NOT_ALTERNATED,
+        faults::EXPEDITED_SIZE_WRONG,
+        faults::STALE_VALUE_AFTER_WRITE,
+        faults::SDO_ANSWERED_IN_STOPPED,
+        faults::PDO_IN_PRE_OPERATIONAL,
+        faults::DOWNLOAD_ACK_MISSING,
+        faults::MAPPING_ENTRY_BYTE_ORDER,
+        faults::GUARDING_TOGGLE_STUCK,
+        faults::SYNC_NOT_STOPPED,
+        modbus::faults::CRC_BYTES_SWAPPED,
+        modbus::faults::STALE_CRC_ACCEPTED,
+        modbus::faults::EXCEPTION_WITHOUT_80H,
+        modbus::faults::EXCEPTION_03_FOR_02,
+        modbus::faults::REPLY_TOO_EARLY,
+        modbus::faults::BROADCAST_ANSWERED,
+        modbus::faults::WRONG_BYTE_COUNT,
+        modbus::faults::WRITE_ECHO_WRONG_VALUE,
+    ],
+    variants: &[
+        canopen::variants::NO_TPDO_ON_START,
+        canopen::variants::REMOTE_FRAMES_IGNORED,
+        canopen::variants::HEARTBEAT_AT_ONCE,
+        canopen::variants::SLOW,
+    ],
+    build,
+};
+
+/// What the manual documents.
+fn documented() -> Behaviour {
+    Behaviour {
+        modbus: registers::DOCUMENTED,
+        ..Behaviour::default()
+    }
+}
+
+static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
+    eds::read(include_str!(
+        "../../../../fixtures/devices/huacheng-ssts1/huacheng-ssts1.eds"
+    ))
+    .dictionary
+});
+
+fn profile() -> Profile {
+    Profile {
+        dictionary: &DICTIONARY,
+        boot_time: Duration::from_millis(20),
+        produces_sync: true,
+        guarding: true,
+        transmit_event: TransmitEvent::Change,
+        lowest_transmit_type: 0,
+        lss: None,
+        saved_on_write: &[],
+        node_object: None,
+        bit_rate_object: None,
+        twins: &[],
+    }
+}
+
+fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
+    let behaviour = KIND.behaviour(documented(), settings)?;
+    let factory = Factory {
+        node: settings.node.unwrap_or(NODE),
+        bit_rate: BIT_RATE,
+        seed: settings.seed,
+    };
+    let address = settings.address.unwrap_or(registers::ADDRESS);
+    let registers = DriveRegisters::new(address, registers::LINE);
+    let mut drive = Drive::default();
+    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut drive);
+    Ok(Box::new(HuachengSsts1 {
+        slave,
+        drive,
+        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed),
+        powered: true,
+    }))
+}
+
+/// The drive on its two ports.
+#[derive(Debug)]
+struct HuachengSsts1 {
+    slave: Slave,
+    drive: Drive,
+    modbus: ModbusSlave<DriveRegisters>,
+    powered: bool,
+}
+
+impl HuachengSsts1 {
+    fn power(&mut self, now: Instant, on: bool) {
+        self.powered = on;
+        if on {
+            self.modbus.registers_mut().power_on();
+        }
+        self.modbus.restart();
+        self.slave.power(now, on, &mut self.drive);
+    }
+
+    fn switch(&mut self, now: Instant, name: &str, value: i64) -> Result<(), NotOffered> {
+        match name {
+            "node" => self.slave.set_node(now, value),
+            "bit-rate" => self.slave.set_bit_rate(value, BIT_RATES),
+            "address" => self.modbus.registers_mut().set_address(value),
+            "baud" => {
+                self.modbus.registers_mut().set_baud(value)?;
+                self.modbus.restart();
+                Ok(())
+            }
+            _ => Err(NotOffered),
+        }
+    }
+}
+
+impl Participant for HuachengSsts1 {
+    fn line(&self, port: usize) -> Line {
+        match port {
+            SERIAL if self.powered => self.modbus.line(),
+            CAN => self.slave.line(),
+            _ => Line::Off,
+        }
+    }
+
+    fn receive(&mut self, now: Instant, port: usize, reception: Reception, _: &mut Outbox) {
+        match (port, reception) {
+            (CAN, Reception::Frame(frame)) => {
+                self.slave.receive(now, &frame, &mut self.drive);
+            }
+            (SERIAL, Reception::Character(character)) if self.powered => {
+                self.modbus.receive(now, character);
+            }
+            _ => {}
+        }
+    }
+
+    fn wake_at(&self) -> Option<Instant> {
+        let serial = self.modbus.wake_at().filter(|_| self.powered);
+        [self.slave.wake_at(), serial].into_iter().flatten().min()
+    }
+
+    fn wake(&mut self, now: Instant, out: &mut Outbox) {
+        self.slave.wake(now, CAN, &mut self.drive, out);
+        if self.powered
+            && self.modbus.wake_at().is_some_and(|at| at <= now)
+            && let Some(characters) = self.modbus.wake(now)
+        {
+            out.send(SERIAL, Transmission::Characters(characters));
+        }
+    }
+
+    /// Process values: objects (`6064:00`) and parameters (`P212`, `register 00D4`).
+    fn stimulate(
+        &mut self,
+        now: Instant,
+        stimulus: &Stimulus,
+        _: &mut Outbox,
+    ) -> Result<(), NotOffered> {
+        match stimulus {
+            Stimulus::Power { on } => self.power(now, *on),
+            Stimulus::ProcessValue { name, value } if name.contains(':') => {
+                self.slave.set_process_value(name, *value)?;
+            }
+            Stimulus::ProcessValue { name, value } => {
+                let registers = self.modbus.registers_mut();
+                registers.set_process_value(name, *value)?;
+            }
+            Stimulus::Condition { name, active } => {
+                let slave = &mut self.slave;
+                self.drive.set_condition(now, name, *active, slave)?;
+            }
+            Stimulus::Setting { name, value } => self.switch(now, name, *value)?,
+        }
+        Ok(())
+    }
+
+    fn offers(&self) -> Vec<StimulusKind> {
+        vec![
+            StimulusKind::Power,
+            StimulusKind::ProcessValue,
+            StimulusKind::Condition,
+            StimulusKind::Setting,
+        ]
+    }
+
+    fn state(&self) -> BTreeMap<String, String> {
+        use modbus::Registers as _;
+        let mut state = self.slave.state();
+        state.extend(self.drive.state());
+        state.extend(self.modbus.registers().state());
+        state
+    }
+}
+
+#[cfg(test)]
+mod tests;

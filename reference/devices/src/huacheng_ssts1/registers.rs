@@ -7,16 +7,16 @@ use fieldproof_link::{NotOffered, Parity, SerialSettings, StopBits};
 use crate::modbus::{Behaviour, Exception, ExceptionCodes, Registers};
 
 /// The address of the drive unless it is given another: P000 to P045, which set it, are not in the manual's text.
-pub const ADDRESS: u8 = 1;
+pub(crate) const ADDRESS: u8 = 1;
 /// How its line is set: the Modbus default, for the same reason.
-pub const LINE: SerialSettings = SerialSettings {
+pub(crate) const LINE: SerialSettings = SerialSettings {
     baud: 19_200,
     parity: Parity::Even,
     stop_bits: StopBits::One,
 };
 
 /// How the manual says the drive behaves: exception 02 is for a value and 03 for an address.
-pub const DOCUMENTED: Behaviour = Behaviour {
+pub(crate) const DOCUMENTED: Behaviour = Behaviour {
     exception_codes: ExceptionCodes::ADDRESS_AND_VALUE_SWAPPED,
     ..Behaviour::CONFORMING
 };
@@ -121,7 +121,7 @@ const GROUPS: &[Group] = &[
 
 /// The parameters as the drive holds them now. What is written is lost at power-off: nothing here stores it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct DriveRegisters {
+pub(crate) struct DriveRegisters {
     address: u8,
     line: SerialSettings,
     /// What departs from the default.
@@ -136,7 +136,7 @@ impl Default for DriveRegisters {
 
 impl DriveRegisters {
     /// As after power-on, with this address on a line set so.
-    pub fn new(address: u8, line: SerialSettings) -> DriveRegisters {
+    pub(crate) fn new(address: u8, line: SerialSettings) -> DriveRegisters {
         DriveRegisters {
             address,
             line,
@@ -145,7 +145,7 @@ impl DriveRegisters {
     }
 
     /// Every parameter as after power-on.
-    pub fn power_on(&mut self) {
+    pub(crate) fn power_on(&mut self) {
         self.values.clear();
     }
 
@@ -153,7 +153,7 @@ impl DriveRegisters {
     ///
     /// # Errors
     /// [`NotOffered`]: any other address.
-    pub fn set_address(&mut self, address: i64) -> Result<(), NotOffered> {
+    pub(crate) fn set_address(&mut self, address: i64) -> Result<(), NotOffered> {
         self.address = u8::try_from(address)
             .ok()
             .filter(|address| (1..=247).contains(address))
@@ -165,7 +165,7 @@ impl DriveRegisters {
     ///
     /// # Errors
     /// [`NotOffered`]: zero, or more than any line has.
-    pub fn set_baud(&mut self, baud: i64) -> Result<(), NotOffered> {
+    pub(crate) fn set_baud(&mut self, baud: i64) -> Result<(), NotOffered> {
         self.line.baud = u32::try_from(baud)
             .ok()
             .filter(|baud| *baud > 0)
@@ -178,7 +178,7 @@ impl DriveRegisters {
     ///
     /// # Errors
     /// [`NotOffered`]: no such parameter, or not a word.
-    pub fn set_process_value(&mut self, name: &str, value: i64) -> Result<(), NotOffered> {
+    pub(crate) fn set_process_value(&mut self, name: &str, value: i64) -> Result<(), NotOffered> {
         let number = match name.strip_prefix("register ") {
             Some(digits) => u16::from_str_radix(digits, 16).ok(),
             None => name

@@ -1,7 +1,5 @@
 //! A Kinco servo drive on CAN: 500 kbit/s, node 1.
 
-mod drive;
-
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
@@ -11,9 +9,9 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
 };
 
-use crate::canopen::{self, Factory, HARDWARE, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
 use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
-use drive::Drive;
+use crate::drive::Drive;
 
 const NODE: u8 = 1;
 const BIT_RATE: u32 = 500_000;
@@ -111,21 +109,6 @@ struct KincoServo {
     drive: Drive,
 }
 
-impl KincoServo {
-    fn condition(&mut self, now: Instant, name: &str, active: bool) -> Result<(), NotOffered> {
-        match name {
-            "hardware-fault" if active != self.drive.hardware_fault => {
-                self.drive.hardware_fault = active;
-                self.slave.set_error(now, HARDWARE, active);
-            }
-            "hardware-fault" => {}
-            "local-control" => self.drive.local_control = active,
-            _ => return Err(NotOffered),
-        }
-        Ok(())
-    }
-}
-
 impl Participant for KincoServo {
     fn line(&self, _: usize) -> Line {
         self.slave.line()
@@ -156,7 +139,10 @@ impl Participant for KincoServo {
             Stimulus::ProcessValue { name, value } => {
                 self.slave.set_process_value(name, *value)?;
             }
-            Stimulus::Condition { name, active } => self.condition(now, name, *active)?,
+            Stimulus::Condition { name, active } => {
+                self.drive
+                    .set_condition(now, name, *active, &mut self.slave)?;
+            }
             Stimulus::Setting { name, value } => match name.as_str() {
                 "node" => self.slave.set_node(now, *value)?,
                 "bit-rate" => self.slave.set_bit_rate(*value, BIT_RATES)?,

@@ -276,7 +276,7 @@ impl Gateway {
         for (address, value) in [
             (ERROR_CODE, at(STATE_REGISTER + 1)),
             (STATUSWORD, state & RUN),
-            (VELOCITY_DEMAND, at(FREQUENCY_DEMAND_REGISTER) / 2 | sign),
+            (VELOCITY_DEMAND, (at(FREQUENCY_DEMAND_REGISTER) / 2) | sign),
         ] {
             if !self.held.contains(&address) {
                 objects.set_number(address, i64::from(value));

@@ -1,25 +1,49 @@
-//! The drive behind the dictionary.
+//! A servo drive behind a CiA 402 dictionary.
 
-use crate::canopen::{Abort, Address, Answer, Application, Objects};
+use fieldproof_link::{Instant, NotOffered};
+
+use crate::canopen::{Abort, Address, Answer, Application, HARDWARE, Objects, Slave};
 
 const CONTROLWORD: Address = Address::new(0x6040, 0);
 const STATUSWORD: Address = Address::new(0x6041, 0);
 const MODE: Address = Address::new(0x6060, 0);
 const MODE_DISPLAY: Address = Address::new(0x6061, 0);
-const POSITION: Address = Address::new(0x6063, 0);
 
 /// Ready to switch on, voltage there, no quick stop, remote.
 const AT_REST: i64 = 0x0231;
 
 /// A drive whose state follows the controlword at once.
 #[derive(Debug, Default)]
-pub(super) struct Drive {
-    pub(super) hardware_fault: bool,
-    pub(super) local_control: bool,
+pub(crate) struct Drive {
+    hardware_fault: bool,
+    local_control: bool,
 }
 
 impl Drive {
-    pub(super) fn state(&self) -> [(String, String); 2] {
+    /// `hardware-fault` refuses writes with an EMCY, `local-control` without one.
+    ///
+    /// # Errors
+    /// [`NotOffered`]: another condition.
+    pub(crate) fn set_condition(
+        &mut self,
+        now: Instant,
+        name: &str,
+        active: bool,
+        slave: &mut Slave,
+    ) -> Result<(), NotOffered> {
+        match name {
+            "hardware-fault" => {
+                if std::mem::replace(&mut self.hardware_fault, active) != active {
+                    slave.set_error(now, HARDWARE, active);
+                }
+            }
+            "local-control" => self.local_control = active,
+            _ => return Err(NotOffered),
+        }
+        Ok(())
+    }
+
+    pub(crate) fn state(&self) -> [(String, String); 2] {
         [
             ("hardware-fault", self.hardware_fault),
             ("local-control", self.local_control),
@@ -61,6 +85,5 @@ impl Application for Drive {
 
     fn reset(&mut self, objects: &mut Objects) {
         objects.set_number(STATUSWORD, AT_REST);
-        objects.set_number(POSITION, 0);
     }
 }
