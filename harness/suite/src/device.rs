@@ -3,8 +3,12 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use crate::Position;
 use crate::model::{Citation, Effect, Source};
+use crate::read_with::{address, node};
 
 /// A device description.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,7 +59,8 @@ pub enum PortDescription {
 }
 
 /// Parity by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Parity {
     /// No parity bit.
     None,
@@ -66,20 +71,27 @@ pub enum Parity {
 }
 
 /// The CANopen side of a device.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct CanopenDescription {
     /// Its node-ID out of the box.
+    #[serde(deserialize_with = "node")]
+    #[schemars(range(min = 1, max = 127))]
     pub node: u8,
     /// Its EDS, a file beside the description.
     pub eds: String,
 }
 
 /// The Modbus side of a device.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ModbusDescription {
     /// Its address out of the box.
+    #[serde(deserialize_with = "address")]
+    #[schemars(range(min = 1, max = 247))]
     pub address: u8,
     /// Its register map, a file beside the description.
+    #[serde(default)]
     pub registers: Option<String>,
 }
 
@@ -129,7 +141,8 @@ pub enum Instead {
 }
 
 /// What a device may claim, in the words of the standards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Feature {
     /// NMT slave with the CiA 301 state machine.
     NmtSlave,

@@ -1,12 +1,24 @@
 //! YAML into typed conformance cases.
 //!
-//! The way of a suite file: [`yaml`] reads text into a tree in which every node knows its place; [`expand`] turns the
-//! rows of a table into cases on that tree; [`model`] says what a step is, and the tree is read into it with the place
-//! of every mistake; [`load`] does all of it and gives back [`Suite`]s and [`Diagnostic`]s.
+//! The way of a suite file: `yaml` reads text into a tree in which every node knows its place; `read` reads that tree
+//! into the words of the language, [`model`], with the place of every mistake, and replaces the placeholders of a
+//! table's row on the way (`expand`); [`load()`] does all of it and gives back [`Suite`]s and [`Diagnostic`]s.
+//! A device description takes the same way: [`load_device`].
 
+pub mod code;
 pub mod device;
 mod diagnostic;
+mod expand;
+mod file;
+mod forms;
+mod load;
 pub mod model;
+mod problem;
+mod read;
+mod read_with;
 pub mod scalar;
+mod yaml;
 
 pub use diagnostic::{Diagnostic, Position, Severity};
+pub use expand::Environment;
+pub use load::{CaseRef, Loaded, SourceFile, Suite, load, load_device};

@@ -1,8 +1,18 @@
 //! The small words of the language, each read from one scalar: durations, rates, objects, frames, numbers.
 
+mod number;
+mod text;
+mod time;
+mod wire;
+
 use std::time::Duration;
 
 use fieldproof_can as can;
+
+pub(crate) use number::{Scale, whole_number};
+pub(crate) use text::{OneText, Text, read_as_text};
+pub(crate) use time::{BitRate, Time, TimeUnit};
+pub(crate) use wire::CanId;
 
 /// A point in the object dictionary: `6041:00`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

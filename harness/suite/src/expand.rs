@@ -1,0 +1,372 @@
+//! Placeholders: what `{name}` in a case stands for.
+//!
+//! | written | stands for |
+//! | --- | --- |
+//! | `{period}` | the cell of the column `period` in the row of the table |
+//! | `{node}`, `{address}` | the node-ID or the Modbus address of the device; in frames and bytes two digits |
+//! | `{580+node}` | 580h and the node-ID; in frames with the digits of `580` |
+//! | `{speed:i32le}` | the number `speed` as the bytes of a signed 32-bit number, low byte first |
+//! | `{device_type}` | the value that an earlier step saved; only where a value stands |
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use crate::problem::{Problem, with_nearest};
+use crate::scalar::whole_number;
+use crate::yaml::{Kind, Node};
+use crate::{Position, code};
+
+/// What the bench gives a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Environment {
+    /// The node-ID of the device, 1 to 127, if it has a CANopen side.
+    pub node: Option<u8>,
+    /// The Modbus address of the device, 1 to 247, if it has a Modbus side.
+    pub address: Option<u8>,
+}
+
+/// The names that the bench gives; no column may have one.
+pub(crate) const BENCH_NAMES: [&str; 2] = ["node", "address"];
+
+/// What the placeholders of a case stand for.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Scope<'a> {
+    /// The row of the table; a map.
+    pub(crate) row: Option<&'a Node>,
+    pub(crate) environment: Environment,
+    /// The names that steps have saved so far.
+    pub(crate) saved: BTreeSet<String>,
+    /// The names that later steps of the case save.
+    pub(crate) saved_later: BTreeSet<String>,
+}
+
+/// How a number is written where it replaces a placeholder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Notation {
+    /// Decimal.
+    Text,
+    /// Two hexadecimal digits a byte.
+    Hex,
+}
+
+/// One `{...}` in a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Placeholder<'t> {
+    /// Where it starts and ends, in bytes, braces included.
+    range: (usize, usize),
+    /// The hexadecimal digits before a `+`.
+    base: Option<&'t str>,
+    pub(crate) name: &'t str,
+    /// What follows a `:`.
+    format: Option<&'t str>,
+}
+
+/// The placeholders in a text, in order. Braces around anything else are ordinary text.
+pub(crate) fn placeholders(text: &str) -> impl Iterator<Item = Placeholder<'_>> {
+    text.match_indices('{').filter_map(|(start, _)| {
+        let end = start + text[start..].find('}')?;
+        let inside = &text[start + 1..end];
+        let (rest, format) = match inside.split_once(':') {
+            Some((rest, format)) => (rest, Some(format)),
+            None => (inside, None),
+        };
+        let (base, name) = match rest.split_once('+') {
+            Some((base, name)) => (Some(base), name),
+            None => (None, rest),
+        };
+        let is_hexadecimal =
+            |base: &str| !base.is_empty() && base.chars().all(|digit| digit.is_ascii_hexdigit());
+        let well_formed = is_name(name)
+            && base.is_none_or(is_hexadecimal)
+            && format.is_none_or(|format| format.chars().all(|c| c.is_ascii_alphanumeric()));
+        well_formed.then_some(Placeholder {
+            range: (start, end + 1),
+            base,
+            name,
+            format,
+        })
+    })
+}
+
+/// Whether `text` may name a column or a saved value.
+pub(crate) fn is_name(text: &str) -> bool {
+    text.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')
+        && text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
+}
+
+/// The name, if the whole text is one plain `{name}`.
+pub(crate) fn whole(text: &str) -> Option<&str> {
+    let name = text.strip_prefix('{')?.strip_suffix('}')?;
+    is_name(name).then_some(name)
+}
+
+impl<'a> Scope<'a> {
+    /// The cell that stands for `node`, if `node` is one plain `{column}`.
+    pub(crate) fn cell(&self, node: &Node) -> Option<&'a Node> {
+        self.row?.get(whole(node.text()?)?)
+    }
+
+    /// The first cell that stands for a part of `text`.
+    pub(crate) fn first_cell(&self, text: &str) -> Option<&'a Node> {
+        let row = self.row?;
+        placeholders(text).find_map(|placeholder| row.get(placeholder.name))
+    }
+
+    /// `text` with its placeholders replaced. In a cell of the table, `in_cell`, columns stand for nothing.
+    pub(crate) fn replace<'t>(
+        &self,
+        text: &'t str,
+        notation: Notation,
+        in_cell: bool,
+    ) -> Result<Cow<'t, str>, Box<Problem>> {
+        if !text.contains('{') {
+            return Ok(Cow::Borrowed(text));
+        }
+        let mut replaced = String::with_capacity(text.len());
+        let mut done = 0;
+        for placeholder in placeholders(text) {
+            let (start, end) = placeholder.range;
+            replaced.push_str(&text[done..start]);
+            replaced.push_str(&self.value(placeholder, notation, in_cell)?);
+            done = end;
+        }
+        replaced.push_str(&text[done..]);
+        Ok(Cow::Owned(replaced))
+    }
+
+    fn value(
+        &self,
+        placeholder: Placeholder<'_>,
+        notation: Notation,
+        in_cell: bool,
+    ) -> Result<String, Box<Problem>> {
+        let name = placeholder.name;
+        let cell = self
+            .row
+            .filter(|_| !in_cell)
+            .and_then(|row| row.get(name).map(|cell| (row, cell)));
+        let text = match (cell, name) {
+            (Some((_, cell)), _) => match &cell.kind {
+                Kind::Text(text) => self.replace(text, notation, true)?,
+                Kind::Empty => Cow::Borrowed(""),
+                Kind::List(_) | Kind::Map(_) => {
+                    return Err(Problem::new(
+                        code::UNKNOWN_PLACEHOLDER,
+                        format!("`{{{name}}}` is {} here", cell.kind_in_words()),
+                        "expected a single value inside a text",
+                    )
+                    .also(cell.at, "this stands for it"));
+                }
+            },
+            (None, "node") => {
+                return bench_number(placeholder, self.environment.node, notation);
+            }
+            (None, "address") => {
+                return bench_number(placeholder, self.environment.address, notation);
+            }
+            (None, _) => return Err(self.unknown(name, in_cell)),
+        };
+        if placeholder.base.is_none() && placeholder.format.is_none() {
+            return Ok(text.into_owned());
+        }
+        let number = whole_number(&text).ok_or_else(|| {
+            Problem::new(
+                code::UNKNOWN_PLACEHOLDER,
+                format!("`{text}` stands for `{{{name}}}` and is not a number"),
+                "expected a whole number",
+            )
+        })?;
+        number_in(placeholder, number, notation)
+    }
+
+    /// What is said of a name that stands for nothing.
+    pub(crate) fn unknown(&self, name: &str, in_cell: bool) -> Box<Problem> {
+        if self.saved.contains(name) {
+            let message = format!("`{{{name}}}` is a saved value, and only a value can be one");
+            return Problem::new(
+                code::UNKNOWN_PLACEHOLDER,
+                message,
+                "known while the case plays",
+            );
+        }
+        if self.saved_later.contains(name) {
+            let message = format!("`{{{name}}}` is used before a step has saved it");
+            return Problem::new(code::NOT_YET_SAVED, message, "saved by a later step");
+        }
+        let mut known: Vec<&str> = Vec::new();
+        if let Some(row) = self.row.filter(|_| !in_cell) {
+            known.extend(row.entries().iter().map(|entry| entry.key.text.as_ref()));
+        }
+        known.extend(BENCH_NAMES);
+        known.extend(self.saved.iter().map(String::as_str));
+        let problem = Problem::new(
+            code::UNKNOWN_PLACEHOLDER,
+            format!("`{{{name}}}` stands for nothing"),
+            "not a column of the case's table, and nothing that a step saved",
+        );
+        with_nearest(problem, name, &known)
+    }
+}
+
+fn bench_number(
+    placeholder: Placeholder<'_>,
+    number: Option<u8>,
+    notation: Notation,
+) -> Result<String, Box<Problem>> {
+    match number {
+        Some(number) => number_in(placeholder, i128::from(number), notation),
+        None => Err(Problem::new(
+            code::UNKNOWN_PLACEHOLDER,
+            format!("`{{{}}}` stands for nothing here", placeholder.name),
+            "the device does not have one in this suite's protocol",
+        )),
+    }
+}
+
+fn number_in(
+    placeholder: Placeholder<'_>,
+    number: i128,
+    notation: Notation,
+) -> Result<String, Box<Problem>> {
+    let (number, digits) = match placeholder.base {
+        Some(base) => {
+            let base_number = u32::from_str_radix(base, 16).map_err(|_| {
+                let message = format!("`{base}` has more than 32 bits");
+                Problem::new(code::UNKNOWN_PLACEHOLDER, message, "too high")
+            })?;
+            (number + i128::from(base_number), base.len())
+        }
+        None => (number, 2),
+    };
+    match placeholder.format {
+        Some(format) => bytes_of(number, format),
+        None if notation == Notation::Hex => Ok(format!("{number:0digits$X}")),
+        None if placeholder.base.is_some() => Ok(format!("0x{number:X}")),
+        None => Ok(number.to_string()),
+    }
+}
+
+/// `u16be`, `i32le`, `u8`: the number as bytes, in hexadecimal.
+fn bytes_of(number: i128, format: &str) -> Result<String, Box<Problem>> {
+    let unknown = || {
+        Problem::new(
+            code::UNKNOWN_PLACEHOLDER,
+            format!("unknown format `{format}`"),
+            "expected u8, u16le, u16be, u32le, u32be, i16le ...",
+        )
+    };
+    let signed = format.starts_with('i');
+    let rest = format.strip_prefix(['u', 'i']).ok_or_else(unknown)?;
+    let (bits, big_endian) = match (rest.strip_suffix("le"), rest.strip_suffix("be")) {
+        (Some(bits), _) => (bits, false),
+        (_, Some(bits)) => (bits, true),
+        _ if rest == "8" => (rest, false),
+        _ => return Err(unknown()),
+    };
+    let bits: u32 = match bits {
+        "8" => 8,
+        "16" => 16,
+        "24" => 24,
+        "32" => 32,
+        "64" => 64,
+        _ => return Err(unknown()),
+    };
+    let (low, high) = match signed {
+        true => (-(1i128 << (bits - 1)), (1i128 << (bits - 1)) - 1),
+        false => (0, (1i128 << bits) - 1),
+    };
+    if !(low..=high).contains(&number) {
+        return Err(Problem::new(
+            code::DOES_NOT_FIT,
+            format!("{number} does not fit {format}"),
+            format!("expected {low} to {high}"),
+        ));
+    }
+    let mut bytes: Vec<u8> = number.to_le_bytes()[..bits as usize / 8].to_vec();
+    if big_endian {
+        bytes.reverse();
+    }
+    Ok(bytes.iter().map(|byte| format!("{byte:02X}")).collect())
+}
+
+/// Where a problem in the text at `template`, whose placeholder stands for `cell`, is best shown.
+pub(crate) fn show_at_cell(problem: &mut Problem, cell: Position, template: Position) {
+    problem.at = Some(cell);
+    problem.template = Some(template);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::yaml;
+
+    fn replace(text: &str, notation: Notation) -> Result<String, String> {
+        let row = yaml::read(
+            "t",
+            "{data: '00 {node}', speed: -2, high: 70000, list: [1]}",
+        )
+        .unwrap();
+        let scope = Scope {
+            row: Some(&row),
+            environment: Environment {
+                node: Some(10),
+                address: None,
+            },
+            saved: BTreeSet::from(["kept".to_owned()]),
+            saved_later: BTreeSet::from(["later".to_owned()]),
+        };
+        let replaced = scope.replace(text, notation, false);
+        replaced
+            .map(Cow::into_owned)
+            .map_err(|problem| format!("{} {}", problem.code, problem.message))
+    }
+
+    #[test]
+    fn placeholders_are_replaced() {
+        use Notation::{Hex, Text};
+        for (text, notation, expected) in [
+            (
+                "no placeholder {in here} {}",
+                Text,
+                "no placeholder {in here} {}",
+            ),
+            ("{speed} and {speed}", Text, "-2 and -2"),
+            ("{node}", Text, "10"),
+            ("{580+node}", Text, "0x58A"),
+            ("{580+node}#{data}.{node}", Hex, "58A#00 0A.0A"),
+            ("{00000580+node}#", Hex, "0000058A#"),
+            (
+                "{speed:i16le} {speed:i16be} {speed:i8}",
+                Hex,
+                "FEFF FFFE FE",
+            ),
+            ("{high:u24be}", Hex, "011170"),
+        ] {
+            assert_eq!(replace(text, notation), Ok(expected.to_owned()), "{text}");
+        }
+        for (text, expected) in [
+            ("{sped}", "S034 `{sped}` stands for nothing"),
+            ("{address}", "S034 `{address}` stands for nothing here"),
+            ("{speed:u16le}", "S026 -2 does not fit u16le"),
+            ("{high:u16}", "S034 unknown format `u16`"),
+            (
+                "{data:u8}",
+                "S034 `00 0A` stands for `{data}` and is not a number",
+            ),
+            ("{list}.", "S034 `{list}` is a list here"),
+            (
+                "{later}",
+                "S039 `{later}` is used before a step has saved it",
+            ),
+            ("{FFFFFFFFF+node}", "S034 `FFFFFFFFF` has more than 32 bits"),
+        ] {
+            assert_eq!(
+                replace(text, Notation::Hex),
+                Err(expected.to_owned()),
+                "{text}"
+            );
+        }
+    }
+}

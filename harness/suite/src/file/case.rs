@@ -1,0 +1,190 @@
+//! A suite file and its cases.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny};
+
+use crate::device::Feature;
+use crate::forms::{Either, OneOrMany, TwoForms};
+use crate::model::{
+    Effect, Forbidden, Located, Need, Protocol, Source, Step, StimulusName, WrittenFor,
+};
+use crate::scalar::ObjectAddress;
+
+/// A fieldproof suite.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Suite")]
+pub(crate) struct SuiteFile {
+    /// The version of the language: 1.
+    #[schemars(range(min = 1, max = 1))]
+    pub(crate) language: Located<u32>,
+    /// The id: `canopen.nmt`, `kinco-servo.worked-examples`.
+    pub(crate) suite: Located<String>,
+    /// One line for people.
+    pub(crate) title: String,
+    /// What the suite speaks; a device needs one of these ports to be tested.
+    pub(crate) protocol: Protocol,
+    /// The only device it is for, by the name of its description; without it the suite is for any device.
+    #[serde(default)]
+    pub(crate) device: Option<String>,
+    /// The documents its cases cite, by short name.
+    #[serde(default)]
+    pub(crate) sources: BTreeMap<String, Source>,
+    /// The cases.
+    pub(crate) cases: ReadLater<Vec<CaseFile>>,
+}
+
+/// A test with one purpose.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Case")]
+pub(crate) struct CaseFile {
+    /// Its name: lower-case words.
+    #[serde(rename = "case")]
+    pub(crate) name: ReadLater<String>,
+    /// One line for people.
+    pub(crate) title: String,
+    /// What it follows: sources by short name, or with a section: `{cia301: "7.3.2"}`.
+    pub(crate) cite: OneOrMany<Located<Either<CiteFile>>>,
+    /// The sources it decides against, when sources contradict each other.
+    #[serde(default)]
+    pub(crate) against: OneOrMany<Located<Either<CiteFile>>>,
+    /// Why it follows one source against another.
+    #[serde(default)]
+    pub(crate) because: Option<String>,
+    /// The worked examples it plays, by their ids.
+    #[serde(default)]
+    pub(crate) examples: OneOrMany<String>,
+    /// What the device or the bench must offer.
+    #[serde(default)]
+    pub(crate) needs: OneOrMany<Either<Need>>,
+    /// What it does to the device.
+    #[serde(default)]
+    pub(crate) effects: OneOrMany<Effect>,
+    /// The node or address its frames are printed for.
+    #[serde(default)]
+    pub(crate) written_for: WrittenFor,
+    /// What may not arrive during the case beside what steps expect.
+    #[serde(default)]
+    pub(crate) forbids: OneOrMany<Forbidden>,
+    /// What must be put back that steps cannot put back by themselves.
+    #[serde(default)]
+    pub(crate) restore: RestoreFile,
+    /// The table: one row, one case. What stands in a column is `{column}` in the case.
+    #[serde(default)]
+    pub(crate) each: ReadLater<Vec<Row>>,
+    /// The columns that name a case; else the first.
+    #[serde(default)]
+    pub(crate) key: ReadLater<OneOrMany<String>>,
+    /// The positive check: if it does not pass, the case is inconclusive.
+    #[serde(default)]
+    pub(crate) control: ReadLater<Vec<Step>>,
+    /// The test.
+    pub(crate) steps: ReadLater<Vec<Step>>,
+}
+
+/// What is put back after a case.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Restore")]
+pub(crate) struct RestoreFile {
+    /// Objects read before the case and written back after it.
+    #[serde(default)]
+    pub(crate) objects: Vec<ObjectAddress>,
+    /// Holding registers read before the case and written back after it.
+    #[serde(default)]
+    pub(crate) registers: Vec<u16>,
+    /// Played at the end, whatever happened, before objects and registers are written back.
+    #[serde(default)]
+    pub(crate) steps: ReadLater<Vec<Step>>,
+}
+
+/// A row of a table; its cells may be anything.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Row {}
+
+impl JsonSchema for Row {
+    fn schema_name() -> Cow<'static, str> {
+        "Row".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({"type": "object", "description": "A row: what stands in each column."})
+    }
+}
+
+/// Read from the tree by itself, so that each mistake in it is found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ReadLater<T>(std::marker::PhantomData<T>);
+
+impl<T> Default for ReadLater<T> {
+    fn default() -> ReadLater<T> {
+        ReadLater(std::marker::PhantomData)
+    }
+}
+
+impl<'de, T> Deserialize<'de> for ReadLater<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ReadLater<T>, D::Error> {
+        IgnoredAny::deserialize(deserializer)?;
+        Ok(ReadLater::default())
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for ReadLater<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}
+
+/// A source by short name, or each short name with its sections.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum CiteFile {
+    Source(String),
+    Sections(BTreeMap<String, OneOrMany<String>>),
+}
+
+impl TwoForms for CiteFile {
+    type Short = String;
+    type Full = BTreeMap<String, OneOrMany<String>>;
+
+    fn from_short(source: String) -> CiteFile {
+        CiteFile::Source(source)
+    }
+
+    fn from_full(sections: BTreeMap<String, OneOrMany<String>>) -> CiteFile {
+        CiteFile::Sections(sections)
+    }
+}
+
+/// A stimulus that the bench must offer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) struct StimulusNeed {
+    /// Its kind.
+    stimulus: StimulusName,
+}
+
+impl TwoForms for Need {
+    type Short = Feature;
+    type Full = StimulusNeed;
+
+    fn from_short(feature: Feature) -> Need {
+        Need::Feature(feature)
+    }
+
+    fn from_full(need: StimulusNeed) -> Need {
+        Need::Stimulus(need.stimulus)
+    }
+}

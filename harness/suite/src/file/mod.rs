@@ -1,0 +1,25 @@
+//! How things are written in a file where that is not how the model has them.
+
+mod can;
+mod case;
+mod device;
+mod modbus;
+mod sdo;
+mod short;
+mod stimulate;
+
+pub(crate) use can::*;
+pub(crate) use case::*;
+pub(crate) use device::*;
+pub(crate) use modbus::*;
+pub(crate) use sdo::*;
+pub(crate) use stimulate::*;
+
+crate::forms::schema_of!(
+    crate::model::Sync: SyncFile,
+    crate::model::ExpectTpdo: ExpectTpdoFile,
+    crate::model::SdoRead: SdoReadFile,
+    crate::model::SdoWrite: SdoWriteFile,
+    crate::model::Modbus: ModbusFile,
+    crate::model::Stimulate: StimulateFile,
+);

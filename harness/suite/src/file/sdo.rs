@@ -1,0 +1,393 @@
+//! Reading and writing objects.
+
+use std::time::Duration;
+
+use schemars::{JsonSchema, Schema, json_schema};
+use serde::Deserialize;
+
+use crate::code;
+use crate::expand::whole;
+use crate::forms::{Either, OneOrMany, TwoForms};
+use crate::model::{
+    AbortExpectation, Located, ReadExpectation, SdoRead, SdoWrite, ValueType, WriteExpectation,
+};
+use crate::problem::Wrong;
+use crate::read::ask;
+use crate::read_with::optional_time;
+use crate::scalar::{ObjectAddress, Text, Time, TimeUnit, Value, read_as_text, whole_number};
+
+/// A value as it is written, before its type is known.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct RawValue(String);
+
+impl Text for RawValue {
+    const ASK: &'static str = ask::SAVEABLE;
+    const EXPECTED: &'static str = "a value";
+
+    fn parse(text: &str) -> Result<RawValue, Wrong> {
+        Ok(RawValue(text.to_owned()))
+    }
+
+    fn schema() -> Schema {
+        json_schema!({"type": ["integer", "number", "string"]})
+    }
+}
+
+read_as_text!(RawValue);
+
+impl RawValue {
+    /// The value as `value_type`; a duration in counts of `unit`, if one is given.
+    fn lower(&self, value_type: ValueType, unit: Option<Duration>) -> Result<Value, Wrong> {
+        if let Some(name) = whole(&self.0) {
+            return Ok(Value::Saved(name.to_owned()));
+        }
+        let Some((low, high)) = value_type.limits() else {
+            return Ok(Value::Text(self.0.clone()));
+        };
+        if let Some(number) = whole_number(&self.0) {
+            return fits(number, low, high).map(Value::Number);
+        }
+        let is_time = self.0.starts_with(|first: char| first.is_ascii_digit());
+        if !is_time {
+            return Err(Wrong::new(
+                code::NUMBER,
+                format!("`{}` is not a whole number", self.0),
+                "expected a number such as 100, 0x64 or 64h",
+            ));
+        }
+        let time = Time::parse(&self.0)?.0;
+        let Some(unit) = unit else {
+            return Err(Wrong::new(
+                code::DURATION,
+                format!(
+                    "`{}` is a duration, and the object's unit is not said",
+                    self.0
+                ),
+                "expected a number, or `unit` beside it",
+            )
+            .help("say what one count of the object is: `unit: ms`, `unit: 100 us`"));
+        };
+        if time.as_nanos() % unit.as_nanos().max(1) != 0 {
+            let message = format!("`{}` is not a whole number of the object's unit", self.0);
+            return Err(Wrong::new(
+                code::DOES_NOT_FIT,
+                message,
+                "between two counts",
+            ));
+        }
+        fits(counts(time, unit), low, high)?;
+        Ok(Value::Duration(time))
+    }
+}
+
+fn counts(time: Duration, unit: Duration) -> i128 {
+    (time.as_nanos() / unit.as_nanos().max(1)) as i128
+}
+
+fn fits(number: i128, low: i128, high: i128) -> Result<i128, Wrong> {
+    if (low..=high).contains(&number) {
+        return Ok(number);
+    }
+    Err(Wrong::new(
+        code::DOES_NOT_FIT,
+        format!("{number} does not fit its type"),
+        format!("expected {low} to {high}"),
+    ))
+}
+
+impl ValueType {
+    /// The lowest and the highest number it holds; `None` for a text.
+    pub(crate) fn limits(self) -> Option<(i128, i128)> {
+        let unsigned = |bits: u32| Some((0, (1i128 << bits) - 1));
+        let signed = |bits: u32| Some((-(1i128 << (bits - 1)), (1i128 << (bits - 1)) - 1));
+        match self {
+            ValueType::U8 => unsigned(8),
+            ValueType::U16 => unsigned(16),
+            ValueType::U24 => unsigned(24),
+            ValueType::U32 => unsigned(32),
+            ValueType::U64 => unsigned(64),
+            ValueType::I8 => signed(8),
+            ValueType::I16 => signed(16),
+            ValueType::I32 => signed(32),
+            ValueType::I64 => signed(64),
+            ValueType::SignMagnitude16 => Some((-0x7FFF, 0x7FFF)),
+            ValueType::Text => None,
+        }
+    }
+}
+
+/// Reads an object.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "SdoRead")]
+pub(crate) struct SdoReadFile {
+    /// The object.
+    object: ObjectAddress,
+    /// Its type; the answer must have its size.
+    #[serde(rename = "as")]
+    value_type: ValueType,
+    /// What must come; without it, any value.
+    #[serde(default)]
+    expect: Option<Located<Either<ReadExpectFile>>>,
+    /// For an expected duration: what one count of the object is.
+    #[serde(default)]
+    unit: Option<TimeUnit>,
+    /// How long after the request; else what the description promises.
+    #[serde(default, deserialize_with = "optional_time")]
+    #[schemars(with = "Option<Time>")]
+    within: Option<Duration>,
+    /// Keeps the value under this name for later steps.
+    #[serde(default)]
+    save: Option<String>,
+    /// Records the value as an observation with these words.
+    #[serde(default)]
+    observe: Option<String>,
+    /// The name of this check, for documented deviations.
+    #[serde(default)]
+    check: Option<String>,
+}
+
+/// What a read must give.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum ReadExpectFile {
+    Value(RawValue),
+    Map(ReadExpectMap),
+}
+
+impl TwoForms for ReadExpectFile {
+    type Short = RawValue;
+    type Full = ReadExpectMap;
+
+    fn from_short(value: RawValue) -> ReadExpectFile {
+        ReadExpectFile::Value(value)
+    }
+
+    fn from_full(map: ReadExpectMap) -> ReadExpectFile {
+        ReadExpectFile::Map(map)
+    }
+}
+
+/// What a read must give, beside one value: one of several, a range, or a refusal.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "ReadExpectation")]
+pub(crate) struct ReadExpectMap {
+    /// One of these.
+    #[serde(default)]
+    one_of: Option<Vec<Located<RawValue>>>,
+    /// The lowest that passes.
+    #[serde(default)]
+    from: Option<Located<RawValue>>,
+    /// The highest that passes.
+    #[serde(default)]
+    to: Option<Located<RawValue>>,
+    /// The abort codes that pass.
+    #[serde(default)]
+    abort: Option<OneOrMany<u32>>,
+    /// The one code that passes under `--strict`.
+    #[serde(default)]
+    strict: Option<u32>,
+}
+
+impl ReadExpectFile {
+    fn lower(
+        self,
+        value_type: ValueType,
+        unit: Option<Duration>,
+    ) -> Result<ReadExpectation, Wrong> {
+        let in_counts = |raw: &RawValue| {
+            let value = raw.lower(value_type, unit)?;
+            Ok(match (value, unit) {
+                (Value::Duration(time), Some(unit)) => Value::Number(counts(time, unit)),
+                (value, _) => value,
+            })
+        };
+        let located = |raw: &Located<RawValue>| {
+            in_counts(&raw.value).map_err(|wrong: Wrong| wrong.at(raw.at))
+        };
+        let limit = |raw: &Located<RawValue>| match located(raw)? {
+            Value::Number(number) => Ok(number),
+            _ => {
+                Err(Wrong::new(code::NUMBER, "a limit is a number", "expected a number").at(raw.at))
+            }
+        };
+        let map = match self {
+            ReadExpectFile::Value(value) => return in_counts(&value).map(ReadExpectation::Value),
+            ReadExpectFile::Map(map) => map,
+        };
+        match (map.one_of, map.from, map.to, map.abort, map.strict) {
+            (Some(values), None, None, None, None) if !values.is_empty() => values
+                .iter()
+                .map(located)
+                .collect::<Result<_, _>>()
+                .map(ReadExpectation::OneOf),
+            (None, Some(from), Some(to), None, None) => {
+                let (low, high) = (limit(&from)?, limit(&to)?);
+                if low > high {
+                    let message = format!("no value lies between {low} and {high}");
+                    return Err(Wrong::new(code::DOES_NOT_FIT, message, "too low").at(to.at));
+                }
+                Ok(ReadExpectation::Range {
+                    from: low,
+                    to: high,
+                })
+            }
+            (None, None, None, Some(abort), strict) => {
+                refusal(abort, strict).map(ReadExpectation::Abort)
+            }
+            _ => Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                "this is not one expectation",
+                "expected `one-of`, or `from` and `to`, or `abort` with `strict` if need be",
+            )),
+        }
+    }
+}
+
+fn refusal(abort: OneOrMany<u32>, strict: Option<u32>) -> Result<AbortExpectation, Wrong> {
+    if abort.0.is_empty() {
+        return Err(Wrong::new(
+            code::EMPTY,
+            "no abort code passes",
+            "expected an abort code",
+        ));
+    }
+    if let Some(strict) = strict
+        && !abort.0.contains(&strict)
+    {
+        return Err(Wrong::new(
+            code::KEYS_TOGETHER,
+            format!("`strict` is {strict:#010X}, which `abort` does not have"),
+            "expected one of the codes of `abort`",
+        ));
+    }
+    Ok(AbortExpectation {
+        abort: abort.0,
+        strict,
+    })
+}
+
+impl TryFrom<SdoReadFile> for SdoRead {
+    type Error = Wrong;
+
+    fn try_from(file: SdoReadFile) -> Result<SdoRead, Wrong> {
+        let unit = file.unit.map(|unit| unit.0);
+        let expect = match file.expect {
+            None => ReadExpectation::Any,
+            Some(expect) => {
+                let lowered = expect.value.0.lower(file.value_type, unit);
+                lowered.map_err(|wrong| wrong.or_at(expect.at))?
+            }
+        };
+        if matches!(expect, ReadExpectation::Abort(_)) && file.save.is_some() {
+            return Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                "a refused read has no value to save",
+                "`save` and `abort` together",
+            ));
+        }
+        Ok(SdoRead {
+            object: file.object,
+            value_type: file.value_type,
+            expect,
+            within: file.within,
+            save: file.save,
+            observe: file.observe,
+            check: file.check,
+        })
+    }
+}
+
+/// Writes an object; put back after the case.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "SdoWrite")]
+pub(crate) struct SdoWriteFile {
+    /// The object.
+    object: ObjectAddress,
+    /// The type it is sent as.
+    #[serde(rename = "as")]
+    value_type: ValueType,
+    /// The value.
+    value: Located<RawValue>,
+    /// For a duration: what one count of the object is.
+    #[serde(default)]
+    unit: Option<TimeUnit>,
+    /// `ok` (the default) or `{abort: [...]}`.
+    #[serde(default)]
+    expect: Option<Located<Either<WriteExpectFile>>>,
+    /// How long after the request; else what the description promises.
+    #[serde(default, deserialize_with = "optional_time")]
+    #[schemars(with = "Option<Time>")]
+    within: Option<Duration>,
+    /// The name of this check, for documented deviations.
+    #[serde(default)]
+    check: Option<String>,
+}
+
+/// What a write must give.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum WriteExpectFile {
+    Ok,
+    Refused(Refusal),
+}
+
+/// `ok`: it is accepted.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Accepted {
+    /// It is accepted.
+    Ok,
+}
+
+/// A refusal that is expected.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) struct Refusal {
+    /// The abort codes that pass. The abort must name the object that was asked for.
+    abort: OneOrMany<u32>,
+    /// The one code that passes under `--strict`.
+    #[serde(default)]
+    strict: Option<u32>,
+}
+
+impl TwoForms for WriteExpectFile {
+    type Short = Accepted;
+    type Full = Refusal;
+
+    fn from_short(_: Accepted) -> WriteExpectFile {
+        WriteExpectFile::Ok
+    }
+
+    fn from_full(refusal: Refusal) -> WriteExpectFile {
+        WriteExpectFile::Refused(refusal)
+    }
+}
+
+impl TryFrom<SdoWriteFile> for SdoWrite {
+    type Error = Wrong;
+
+    fn try_from(file: SdoWriteFile) -> Result<SdoWrite, Wrong> {
+        let unit = file.unit.map(|unit| unit.0);
+        let value = file.value.value.lower(file.value_type, unit);
+        let value = value.map_err(|wrong| wrong.or_at(file.value.at))?;
+        let expect = match file.expect {
+            None => WriteExpectation::Ok,
+            Some(expect) => match expect.value.0 {
+                WriteExpectFile::Ok => WriteExpectation::Ok,
+                WriteExpectFile::Refused(Refusal { abort, strict }) => refusal(abort, strict)
+                    .map(WriteExpectation::Abort)
+                    .map_err(|wrong| wrong.or_at(expect.at))?,
+            },
+        };
+        Ok(SdoWrite {
+            object: file.object,
+            value_type: file.value_type,
+            value,
+            unit,
+            expect,
+            within: file.within,
+            check: file.check,
+        })
+    }
+}

@@ -1,0 +1,63 @@
+//! What the bench does to the device, by the key that says what.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::code;
+use crate::model::{PowerAction, Stimulate};
+use crate::problem::Wrong;
+
+/// A stimulus: `{power: off}`, `{process-value: .., to: ..}`, `{condition: .., active: ..}` or `{setting: .., to: ..}`.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Stimulate")]
+pub(crate) struct StimulateFile {
+    /// Power off and on.
+    #[serde(default)]
+    power: Option<PowerAction>,
+    /// A value that the device measures, by name.
+    #[serde(default)]
+    process_value: Option<String>,
+    /// A condition of the device, by name; ended after the case.
+    #[serde(default)]
+    condition: Option<String>,
+    /// A switch of the device, by name.
+    #[serde(default)]
+    setting: Option<String>,
+    /// The value of a process value or a setting.
+    #[serde(default)]
+    to: Option<i64>,
+    /// Whether the condition holds from now on.
+    #[serde(default)]
+    active: Option<bool>,
+}
+
+impl TryFrom<StimulateFile> for Stimulate {
+    type Error = Wrong;
+
+    fn try_from(file: StimulateFile) -> Result<Stimulate, Wrong> {
+        let StimulateFile {
+            power,
+            process_value,
+            condition,
+            setting,
+            to,
+            active,
+        } = file;
+        match (power, process_value, condition, setting, to, active) {
+            (Some(action), None, None, None, None, None) => Ok(Stimulate::Power(action)),
+            (None, Some(name), None, None, Some(to), None) => {
+                Ok(Stimulate::ProcessValue { name, to })
+            }
+            (None, None, Some(name), None, None, Some(active)) => {
+                Ok(Stimulate::Condition { name, active })
+            }
+            (None, None, None, Some(name), Some(to), None) => Ok(Stimulate::Setting { name, to }),
+            _ => Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                "this is not one stimulus",
+                "expected `power`, `process-value` with `to`, `condition` with `active`, or `setting` with `to`",
+            )),
+        }
+    }
+}

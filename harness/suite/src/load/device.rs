@@ -1,0 +1,136 @@
+//! A device description.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::SourceFile;
+use super::case::citations;
+use super::suite::{check_language, check_name};
+use crate::device::{Deviation, DeviceDescription, PortDescription};
+use crate::expand::Scope;
+use crate::file::{DeviationFile, DeviceFile, PortFile};
+use crate::model::{Located, Source};
+use crate::problem::Problem;
+use crate::read::Reader;
+use crate::yaml::{self, Node};
+use crate::{Diagnostic, Position, code};
+
+/// Reads a device description.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn load_device(file: &SourceFile) -> Result<DeviceDescription, Vec<Diagnostic>> {
+    let root = yaml::read(&file.path, &file.text)?;
+    let mut problems = Vec::new();
+    match read(&root, &mut problems) {
+        Some(device) if problems.is_empty() => Ok(device),
+        _ => {
+            problems.sort_by_key(|problem| problem.at);
+            let problems = problems.into_iter();
+            Err(problems
+                .map(|problem| problem.into_diagnostic(&file.path))
+                .collect())
+        }
+    }
+}
+
+fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<DeviceDescription> {
+    if let Err(problem) = check_language(root) {
+        problems.push(*problem);
+        return None;
+    }
+    let scope = Scope::default();
+    let file = match DeviceFile::deserialize(Reader::new(root, &scope, root.at)) {
+        Ok(file) => file,
+        Err(error) => {
+            problems.push(*error.0);
+            return None;
+        }
+    };
+    if let Err(problem) = check_name(&file.device.value, file.device.at) {
+        problems.push(*problem);
+    }
+    let ports_at = root.entry("ports").map_or(root.at, |entry| entry.key.at);
+    let ports = read_ports(file.ports.value, root.get("ports"), ports_at, problems);
+    let is_can = |port: &PortDescription| matches!(port, PortDescription::Can { .. });
+    for (side, needs, has) in [
+        (
+            file.canopen.is_some().then_some("canopen"),
+            "can",
+            ports.values().any(is_can),
+        ),
+        (
+            file.modbus.is_some().then_some("modbus"),
+            "serial",
+            ports.values().any(|port| !is_can(port)),
+        ),
+    ] {
+        if let Some(side) = side
+            && !has
+        {
+            let message = format!("the device has a `{side}` side and no port for it");
+            let problem = Problem::new(
+                code::NO_PORT,
+                message,
+                format!("needs a port with `{needs}`"),
+            );
+            problems.push(*problem.at(ports_at));
+        }
+    }
+    let deviates = file.deviates.into_iter();
+    Some(DeviceDescription {
+        language: file.language,
+        device: file.device.value,
+        title: file.title,
+        ports,
+        canopen: file.canopen.map(|side| side.value),
+        modbus: file.modbus.map(|side| side.value),
+        features: file.features,
+        timing: file.timing.lower(),
+        dangers: file.dangers,
+        deviates: deviates
+            .map(|one| read_deviation(one, &file.sources, problems))
+            .collect(),
+        sources: file.sources,
+    })
+}
+
+fn read_ports(
+    ports: BTreeMap<String, PortFile>,
+    nodes: Option<&Node>,
+    at: Position,
+    problems: &mut Vec<Problem>,
+) -> BTreeMap<String, PortDescription> {
+    let mut lowered = BTreeMap::new();
+    for (role, port) in ports {
+        let at = nodes
+            .and_then(|nodes| nodes.get(&role))
+            .map_or(at, |port| port.at);
+        match port.lower() {
+            Ok(port) => {
+                lowered.insert(role, port);
+            }
+            Err(wrong) => problems.push(*wrong.or_at(at).into_problem()),
+        }
+    }
+    lowered
+}
+
+fn read_deviation(
+    deviation: Located<DeviationFile>,
+    sources: &BTreeMap<String, Source>,
+    problems: &mut Vec<Problem>,
+) -> Deviation {
+    let DeviationFile {
+        check,
+        instead,
+        cite,
+    } = deviation.value;
+    Deviation {
+        check,
+        instead: instead.lower(),
+        cite: citations(sources, cite, problems),
+        at: deviation.at,
+    }
+}

@@ -1,0 +1,160 @@
+//! Files into suites: every file is read and every row of every table is checked once; a case is made from its row
+//! again each time it is asked for, so that a suite of many rows stays small.
+
+mod case;
+mod check;
+mod device;
+mod suite;
+
+use std::collections::BTreeMap;
+
+pub use device::load_device;
+
+use crate::expand::Environment;
+use crate::model::{Case, SuiteHead};
+use crate::yaml::Node;
+use crate::{Diagnostic, Position, Severity};
+
+/// A file, already read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SourceFile {
+    /// Its path as the user named it; diagnostics carry it.
+    pub path: String,
+    /// What stands in it.
+    pub text: String,
+}
+
+/// What came of some files.
+#[derive(Debug, Clone, Default)]
+pub struct Loaded {
+    /// The suites without errors, in the order of their files.
+    pub suites: Vec<Suite>,
+    /// Everything that is wrong, file by file, from top to bottom.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// A suite that has been checked.
+#[derive(Debug, Clone)]
+pub struct Suite {
+    /// Its head.
+    pub head: SuiteHead,
+    /// The path of its file.
+    pub path: String,
+    text: String,
+    /// Where each line starts in `text`.
+    lines: Vec<usize>,
+    cases: Vec<CaseTemplate>,
+}
+
+/// A case as written.
+#[derive(Debug, Clone)]
+struct CaseTemplate {
+    name: String,
+    at: Position,
+    /// Everything but the table.
+    body: Node,
+    rows: Vec<Node>,
+    /// The columns that name a case.
+    key: Vec<String>,
+}
+
+/// One case of a suite: a row of its table, or the whole of a case without one.
+#[derive(Debug, Clone, Copy)]
+pub struct CaseRef<'a> {
+    suite: &'a Suite,
+    template: &'a CaseTemplate,
+    row: Option<&'a Node>,
+}
+
+/// Reads suites. All mistakes are found at once, in all files.
+pub fn load(files: &[SourceFile]) -> Loaded {
+    let mut loaded = Loaded::default();
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
+    for file in files {
+        let (suite, mut diagnostics) = suite::read(file, &mut names);
+        diagnostics.sort_by_key(|diagnostic| diagnostic.at);
+        let usable = diagnostics
+            .iter()
+            .all(|diagnostic| diagnostic.severity == Severity::Warning);
+        loaded.diagnostics.append(&mut diagnostics);
+        loaded.suites.extend(suite.filter(|_| usable));
+    }
+    loaded
+}
+
+impl Suite {
+    fn new(head: SuiteHead, file: &SourceFile, cases: Vec<CaseTemplate>) -> Suite {
+        let starts = file.text.match_indices('\n').map(|(end, _)| end + 1);
+        Suite {
+            head,
+            path: file.path.clone(),
+            lines: std::iter::once(0).chain(starts).collect(),
+            text: file.text.clone(),
+            cases,
+        }
+    }
+
+    /// Its cases, tables expanded, in the order of the file.
+    pub fn cases(&self) -> impl Iterator<Item = CaseRef<'_>> {
+        self.cases.iter().flat_map(move |template| {
+            let whole = template.rows.is_empty().then_some(None);
+            let rows = template.rows.iter().map(Some);
+            whole.into_iter().chain(rows).map(move |row| CaseRef {
+                suite: self,
+                template,
+                row,
+            })
+        })
+    }
+
+    /// The text of a line of its file, counted from 1; empty if there is no such line.
+    pub fn line_text(&self, line: u32) -> &str {
+        let number = line as usize;
+        let start = number
+            .checked_sub(1)
+            .and_then(|index| self.lines.get(index))
+            .copied();
+        let end = self.lines.get(number).copied().unwrap_or(self.text.len());
+        let text = start.and_then(|start| self.text.get(start..end));
+        text.unwrap_or_default().trim_end_matches(['\r', '\n'])
+    }
+}
+
+impl<'a> CaseRef<'a> {
+    /// The suite it belongs to.
+    pub fn suite(&self) -> &'a Suite {
+        self.suite
+    }
+
+    /// `suite/case[key=value]`; without a table `suite/case`.
+    pub fn id(&self) -> String {
+        let mut id = self.written_id();
+        if let Some(row) = self.row {
+            id.push_str(&case::row_key(row, &self.template.key));
+        }
+        id
+    }
+
+    /// `suite/case`: the case as written, before its table.
+    pub fn written_id(&self) -> String {
+        format!("{}/{}", self.suite.head.suite, self.template.name)
+    }
+
+    /// Where it stands in its file: its row, or its name.
+    pub fn at(&self) -> Position {
+        self.row.map_or(self.template.at, |row| row.at)
+    }
+
+    /// The case, ready to be played on a device.
+    ///
+    /// # Errors
+    /// What cannot be read with this environment: a frame that is none with this node-ID, a `{node}` where the device
+    /// has none.
+    pub fn lower(&self, environment: &Environment) -> Result<Case, Vec<Diagnostic>> {
+        case::read(*self, environment).map_err(|problems| {
+            let into_diagnostic =
+                |problem: crate::problem::Problem| problem.into_diagnostic(&self.suite.path);
+            problems.into_iter().map(into_diagnostic).collect()
+        })
+    }
+}

@@ -1,0 +1,18 @@
+//! What a suite file may say: the words of the language as types. The JSON Schema is made from these, and the loader
+//! reads into these.
+
+mod canopen;
+mod frames;
+mod modbus;
+mod sdo;
+mod step;
+mod stimulate;
+mod suite;
+
+pub use canopen::*;
+pub use frames::*;
+pub use modbus::*;
+pub use sdo::*;
+pub use step::*;
+pub use stimulate::*;
+pub use suite::*;

@@ -1,0 +1,95 @@
+//! One action or expectation: the verbs.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{
+    Expect, ExpectBootUp, ExpectBytes, ExpectHeartbeat, ExpectSilence, ExpectState, ExpectTpdo,
+    Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync, Stimulate,
+    Sync,
+};
+use crate::forms::{either, either_schema};
+use crate::read_with::bit_rate;
+use crate::scalar::BitRate;
+
+/// One action or expectation. In the file: a map with one key, the verb in kebab case.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Step {
+    /// `send: "601#4063600000000000"`: a CAN frame, whatever it says.
+    Send(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<Send>")]
+        Send,
+    ),
+    /// `expect: "581#43636000????????"`: the next frame with this identifier must match.
+    Expect(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<Expect>")]
+        Expect,
+    ),
+    /// `expect-silence: 500 ms`: nothing arrives (of the given identifiers, or on the port).
+    ExpectSilence(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<ExpectSilence>")]
+        ExpectSilence,
+    ),
+    /// `nmt: start`: an NMT command to this node, or to `node: all`.
+    Nmt(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<Nmt>")]
+        Nmt,
+    ),
+    /// `nmt-enter: operational`: brings the node into a state and makes sure; if it cannot, the case is inconclusive.
+    NmtEnter(NmtState),
+    /// `expect-state: {is: stopped, within: 100 ms}`: by heartbeat, guarding, or what the state forbids and allows.
+    ExpectState(ExpectState),
+    /// `expect-boot-up: {within: 2 s}`: 700h + node, one byte 00.
+    ExpectBootUp(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<ExpectBootUp>")]
+        ExpectBootUp,
+    ),
+    /// `expect-heartbeat: {period: 100 ms ± 5 %, count: 10, state: operational}`.
+    ExpectHeartbeat(ExpectHeartbeat),
+    /// `sync:` or `sync: {count: 3, period: 100 ms}`: sends SYNC messages.
+    Sync(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<Sync>")]
+        Sync,
+    ),
+    /// `start-sync: {period: 100 ms}`: a SYNC producer beside the case until `stop-sync` or its end.
+    StartSync(StartSync),
+    /// `stop-sync:`.
+    StopSync,
+    /// `expect-tpdo: {number: 1, within: 100 ms, data: "D7C70000????????"}`.
+    ExpectTpdo(ExpectTpdo),
+    /// `send-rpdo: {number: 1, data: "0F00"}`.
+    SendRpdo(SendRpdo),
+    /// `sdo-read: {object: "1000:00", as: u32, expect: 0x192}`.
+    SdoRead(SdoRead),
+    /// `sdo-write: {object: "1017:00", as: u16, value: 100 ms, unit: 1 ms}`; put back after the case.
+    SdoWrite(SdoWrite),
+    /// `modbus: {read-holding: {address: 0, count: 1}, expect: {registers: [1]}}`; writes are put back after the case.
+    Modbus(Modbus),
+    /// `send-bytes: {bytes: "20 03 00 00 00 01", crc: append}`.
+    SendBytes(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<SendBytes>")]
+        SendBytes,
+    ),
+    /// `expect-bytes: "20 03 02 0F B4 01 C4"`: the next frame on the serial port must match.
+    ExpectBytes(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<ExpectBytes>")]
+        ExpectBytes,
+    ),
+    /// `stimulate: {process-value: "6063:00", to: -12013}`.
+    Stimulate(Stimulate),
+    /// `set-bit-rate: 125 kbit/s`: the tester's own side of the CAN port.
+    SetBitRate(
+        #[serde(deserialize_with = "bit_rate")]
+        #[schemars(with = "BitRate")]
+        u32,
+    ),
+}

@@ -1,0 +1,47 @@
+//! What the bench does to the device beside the bus.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::file::StimulateFile;
+
+/// See [`Step::Stimulate`].
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "StimulateFile")]
+pub enum Stimulate {
+    /// `{power: off}`, `{power: on}`, `{power: cycle}`
+    Power(PowerAction),
+    /// `{process-value: "6063:00", to: -12013}`
+    ProcessValue {
+        /// What.
+        name: String,
+        /// The raw value.
+        to: i64,
+    },
+    /// `{condition: hardware-fault, active: true}`; ended after the case.
+    Condition {
+        /// What.
+        name: String,
+        /// Whether it holds from now on.
+        active: bool,
+    },
+    /// `{setting: node, to: 5}`
+    Setting {
+        /// What.
+        name: String,
+        /// The value.
+        to: i64,
+    },
+}
+
+/// What is done to the power.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PowerAction {
+    /// Off.
+    Off,
+    /// On.
+    On,
+    /// Off for a second, then on.
+    Cycle,
+}

@@ -1,0 +1,95 @@
+//! How fields whose types serde knows in another way are read: for `deserialize_with`.
+
+use std::time::Duration;
+
+use serde::de::{Deserialize, Deserializer, Error};
+
+use crate::code;
+use crate::file::{DecodeFile, ModbusException};
+use crate::forms::OneOrMany;
+use crate::model::Decode;
+use crate::problem::Wrong;
+use crate::scalar::{BitRate, CanId, Time};
+
+pub(crate) fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Duration, D::Error> {
+    Time::deserialize(deserializer).map(|time| time.0)
+}
+
+pub(crate) fn optional_time<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Duration>, D::Error> {
+    let time = Option::<Time>::deserialize(deserializer)?;
+    Ok(time.map(|time| time.0))
+}
+
+pub(crate) fn bit_rate<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    BitRate::deserialize(deserializer).map(|rate| rate.0)
+}
+
+pub(crate) fn can_ids<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<u16>, D::Error> {
+    let ids = OneOrMany::<CanId>::deserialize(deserializer)?;
+    Ok(ids.0.into_iter().map(|id| id.0).collect())
+}
+
+pub(crate) fn exceptions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<u8>, D::Error> {
+    let exceptions = OneOrMany::<ModbusException>::deserialize(deserializer)?;
+    Ok(exceptions.0.into_iter().map(|code| code.0).collect())
+}
+
+/// Of a CAN frame, low byte first unless it says otherwise.
+pub(crate) fn decode_little_endian<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<Decode>, D::Error> {
+    let decode = OneOrMany::<DecodeFile>::deserialize(deserializer)?;
+    Ok(decode.0.into_iter().map(|one| one.lower(false)).collect())
+}
+
+/// Of Modbus bytes, high byte first unless it says otherwise.
+pub(crate) fn decode_big_endian<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<Decode>, D::Error> {
+    let decode = OneOrMany::<DecodeFile>::deserialize(deserializer)?;
+    Ok(decode.0.into_iter().map(|one| one.lower(true)).collect())
+}
+
+pub(crate) fn pdo_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
+    within(u8::deserialize(deserializer)?, 1, 4)
+}
+
+pub(crate) fn node<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
+    within(u8::deserialize(deserializer)?, 1, 127)
+}
+
+pub(crate) fn address<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
+    within(u8::deserialize(deserializer)?, 1, 247)
+}
+
+pub(crate) fn optional_node<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u8>, D::Error> {
+    let node = Option::<u8>::deserialize(deserializer)?;
+    node.map(|node| within(node, 1, 127)).transpose()
+}
+
+pub(crate) fn optional_address<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u8>, D::Error> {
+    let address = Option::<u8>::deserialize(deserializer)?;
+    address.map(|address| within(address, 1, 247)).transpose()
+}
+
+fn within<E: Error>(number: u8, low: u8, high: u8) -> Result<u8, E> {
+    if (low..=high).contains(&number) {
+        return Ok(number);
+    }
+    Err(E::custom(Wrong::new(
+        code::NUMBER,
+        format!("{number} is out of range"),
+        format!("expected {low} to {high}"),
+    )))
+}
+
+/// How many heartbeats or PDOs are measured where the case does not say.
+pub(crate) fn ten() -> u32 {
+    10
+}

@@ -1,0 +1,164 @@
+//! Suites into cases.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::time::Duration;
+
+use fieldproof_suite::model::{ReadExpectation, Step};
+use fieldproof_suite::scalar::{Bytes, Number, Value};
+use fieldproof_suite::{Diagnostic, Environment, Loaded, SourceFile, load};
+
+const NODE_1: Environment = Environment {
+    node: Some(1),
+    address: None,
+};
+
+fn load_text(text: &str) -> Loaded {
+    load(&[SourceFile {
+        path: "suite.yaml".to_owned(),
+        text: text.to_owned(),
+    }])
+}
+
+fn shown(diagnostics: &[Diagnostic]) -> Vec<String> {
+    let show = |one: &Diagnostic| {
+        format!(
+            "{}:{} {} {} | {} | {:?} {:?}",
+            one.at.line, one.at.column, one.code, one.message, one.label, one.help, one.also
+        )
+    };
+    diagnostics.iter().map(show).collect()
+}
+
+fn suite(cases: &str) -> String {
+    format!(
+        "language: 1
+suite: canopen.sample
+title: A sample
+protocol: gateway
+sources:
+  cia301: {{document: CiA 301 4.2.0, section: 7.3.2}}
+  manual: {{document: A manual}}
+cases:
+{cases}"
+    )
+}
+
+/// The case of a suite with one case.
+fn steps(text: &str) -> Vec<Step> {
+    let indented: String = text.lines().map(|line| format!("      {line}\n")).collect();
+    let text = suite(&format!(
+        "  - case: one
+    title: One
+    cite: cia301
+    effects: [writes, resets, disturbs-bus]
+    steps:
+{indented}"
+    ));
+    let loaded = load_text(&text);
+    assert_eq!(shown(&loaded.diagnostics), Vec::<String>::new(), "{text}");
+    let environment = Environment {
+        node: Some(0x0A),
+        address: Some(0x20),
+    };
+    let case = loaded.suites[0].cases().next().unwrap();
+    let case = case.lower(&environment).unwrap();
+    case.steps.into_iter().map(|step| step.value).collect()
+}
+
+#[test]
+fn a_table_makes_cases() {
+    let loaded = load_text(&suite(
+        "  - case: transition
+    title: \"{command} moves the node from {from} to {to}\"
+    cite: [cia301, {manual: 4.10}]
+    key: [from, command]
+    each:
+      - {from: pre-operational, command: start, to: operational}
+      - {from: operational,     command: stop,  to: stopped}
+    steps:
+      - nmt-enter: \"{from}\"
+      - nmt: \"{command}\"
+      - expect-state: {is: \"{to}\", within: 100 ms}
+",
+    ));
+    assert_eq!(shown(&loaded.diagnostics), Vec::<String>::new());
+    let suite = &loaded.suites[0];
+    let ids: Vec<String> = suite.cases().map(|case| case.id()).collect();
+    assert_eq!(
+        ids,
+        [
+            "canopen.sample/transition[from=pre-operational,command=start]",
+            "canopen.sample/transition[from=operational,command=stop]"
+        ]
+    );
+    let case = suite.cases().nth(1).unwrap();
+    assert_eq!(case.written_id(), "canopen.sample/transition");
+    assert_eq!(
+        suite.line_text(case.at().line).trim_start(),
+        "- {from: operational,     command: stop,  to: stopped}"
+    );
+    let case = case.lower(&NODE_1).unwrap();
+    assert_eq!(
+        case.title,
+        "stop moves the node from operational to stopped"
+    );
+    assert_eq!(case.cites[0].section.as_deref(), Some("7.3.2"));
+    assert_eq!(case.cites[1].section.as_deref(), Some("4.10"));
+    assert_eq!(
+        suite.line_text(case.steps[1].at.line),
+        "      - nmt: \"{command}\""
+    );
+}
+
+#[test]
+fn the_bench_gives_node_and_address() {
+    let steps = steps(
+        "- send: \"{600+node}#40.0010.00.{node}000000\"
+- expect-silence: {lasting: 50 ms, of: [\"{580+node}\", 701]}
+- send-bytes: {bytes: \"{address} 03 00 00\", crc: append}
+- sdo-read: {object: \"1014:00\", as: u32, expect: \"{80+node}\"}",
+    );
+    let Step::Send(send) = &steps[0] else {
+        panic!("{steps:?}")
+    };
+    assert_eq!(send.frame.0, "60A#400010000A000000".parse().unwrap());
+    let Step::ExpectSilence(silence) = &steps[1] else {
+        panic!("{steps:?}")
+    };
+    assert_eq!(silence.of, [0x58A, 0x701]);
+    assert_eq!(silence.lasting, Duration::from_millis(50));
+    let Step::SendBytes(send) = &steps[2] else {
+        panic!("{steps:?}")
+    };
+    assert_eq!(send.bytes, Bytes(vec![0x20, 3, 0, 0]));
+    let Step::SdoRead(read) = &steps[3] else {
+        panic!("{steps:?}")
+    };
+    assert_eq!(read.expect, ReadExpectation::Value(Value::Number(0x8A)));
+}
+
+#[test]
+fn a_saved_value_stands_where_a_value_stands() {
+    let steps = steps(
+        "- sdo-read: {object: \"1000:00\", as: u32, save: device_type}
+- sdo-read: {object: \"1000:00\", as: u32, expect: \"{device_type}\"}
+- modbus: {read-holding: {address: 0, count: 1}, expect: {registers: [\"{device_type}\"]}}
+- stop-sync:
+- sync:",
+    );
+    let Step::SdoRead(read) = &steps[1] else {
+        panic!("{steps:?}")
+    };
+    let saved = Value::Saved("device_type".to_owned());
+    assert_eq!(read.expect, ReadExpectation::Value(saved));
+    let Step::Modbus(modbus) = &steps[2] else {
+        panic!("{steps:?}")
+    };
+    let registers = vec![Number::Saved("device_type".to_owned())];
+    assert_eq!(
+        modbus.expect,
+        fieldproof_suite::model::ModbusExpectation::Registers(registers)
+    );
+    assert_eq!(steps[3], Step::StopSync);
+}
