@@ -32,7 +32,8 @@ impl Ink {
         self.paint(Style::new().dimmed(), text)
     }
 
-    pub(crate) fn verdict(self, verdict: Verdict, text: impl fmt::Display) -> String {
+    /// `text` in the colour of `verdict`.
+    pub fn verdict(self, verdict: Verdict, text: impl fmt::Display) -> String {
         self.paint(verdict_style(verdict), text)
     }
 }

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::io::{self, Read, Write};
 
 use fieldproof_record::{
-    CaseFinished, CaseStarted, Event, LaneStarted, Limits, Measurement, Verdict,
+    CaseFinished, CaseStarted, Event, LaneStarted, Limits, Measurement, Place, Verdict,
 };
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event as Xml};
@@ -106,9 +106,11 @@ impl<W: Write> JunitLane<W> {
             ),
             Event::Note(note) => self.property("note".to_owned(), note.text.clone()),
             Event::CaseFinished(finished) => {
-                if let Some(case) = self.case.take() {
-                    self.case(case, finished)?;
-                }
+                let case = self
+                    .case
+                    .take()
+                    .unwrap_or_else(|| unannounced(&finished.id));
+                self.case(case, finished)?;
             }
             Event::StepStarted(_)
             | Event::Frame(_)
@@ -283,6 +285,26 @@ impl Outcome {
             Verdict::Deviation | Verdict::Fail => Outcome::Failure,
             Verdict::Inconclusive | Verdict::Error => Outcome::Error,
         }
+    }
+}
+
+/// A case that finished and was never begun: it must not be lost.
+fn unannounced(id: &str) -> Case {
+    let started = CaseStarted {
+        id: id.to_owned(),
+        written_id: id.to_owned(),
+        title: id.to_owned(),
+        at_ns: 0,
+        cites: Vec::new(),
+        against: Vec::new(),
+        because: None,
+        examples: Vec::new(),
+        effects: Vec::new(),
+        place: Place::default(),
+    };
+    Case {
+        started: Box::new(started),
+        properties: Vec::new(),
     }
 }
 

@@ -10,7 +10,7 @@ use std::io::Cursor;
 use fieldproof_record::{Event, Note, Verdict};
 use fieldproof_report::junit::{JunitLane, assemble};
 use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
-use support::{case, case_finished, case_started, lane, lane_started, suite_started};
+use support::{case_finished, case_started, lane, lane_started, suite_started};
 
 fn junit(lanes: &[Vec<Event>], strict: bool) -> String {
     let mut written = Vec::new();
@@ -241,6 +241,18 @@ fn record_that_breaks_off_within_a_case_is_an_error() {
     events.truncate(events.len() - 3);
     let report = read(&junit(&[events], false));
     assert_eq!(kinds(&report), [("passed", None), ("error", Some("error"))]);
+}
+
+#[test]
+fn case_that_was_never_begun_is_not_lost() {
+    let mut events = lane("drive", &[Verdict::Skipped]);
+    events.retain(|event| !matches!(event, Event::CaseStarted(_)));
+    let report = read(&junit(&[events], false));
+    assert_eq!(report.tests, 1);
+    assert_eq!(
+        report.test_suites[0].test_cases[0].name.as_str(),
+        "drive.worked-examples/skipped"
+    );
 }
 
 #[test]
