@@ -1,2 +1,10 @@
 //! The program.
-fn main() {}
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use fieldproof::Options;
+
+fn main() -> ExitCode {
+    fieldproof::main(&Options::parse()).into()
+}

@@ -1,0 +1,136 @@
+//! `fieldproof devices` and `fieldproof faults`
+
+use std::fmt::Write;
+
+use fieldproof_run::feature_name;
+use serde::Serialize;
+
+use crate::complaint::Complaint;
+use crate::exit::Exit;
+use crate::library::{Device, Library};
+use crate::options::{Format, Selection};
+use crate::screen::Screen;
+
+#[derive(Serialize)]
+struct ListedDevice<'a> {
+    device: &'a str,
+    title: &'a str,
+    ports: Vec<&'a str>,
+    node: Option<u8>,
+    address: Option<u8>,
+    features: Vec<&'static str>,
+    deviations: Vec<&'a str>,
+    faults: Vec<&'static str>,
+    variants: Vec<&'static str>,
+}
+
+/// Lists the devices.
+pub(crate) fn devices(format: Format, screen: &mut Screen) -> Result<Exit, Complaint> {
+    let library = Library::load(&Selection::default())?;
+    let devices: Vec<ListedDevice<'_>> = library.devices.iter().map(listed).collect();
+    match format {
+        Format::Json => screen.print_json(&devices),
+        Format::Text => {
+            let mut text = String::new();
+            for device in &devices {
+                describe(&mut text, device);
+            }
+            screen.print(&text);
+        }
+    }
+    Ok(Exit::Passed)
+}
+
+fn listed(device: &Device) -> ListedDevice<'_> {
+    let description = &device.description;
+    ListedDevice {
+        device: &description.device,
+        title: &description.title,
+        ports: description.ports.keys().map(String::as_str).collect(),
+        node: description.canopen.as_ref().map(|canopen| canopen.node),
+        address: description.modbus.as_ref().map(|modbus| modbus.address),
+        features: description
+            .features
+            .iter()
+            .map(|feature| feature_name(*feature))
+            .collect(),
+        deviations: description
+            .deviates
+            .iter()
+            .map(|deviation| deviation.check.as_str())
+            .collect(),
+        faults: device.kind.faults.iter().map(|fault| fault.name).collect(),
+        variants: device
+            .kind
+            .variants
+            .iter()
+            .map(|variant| variant.name)
+            .collect(),
+    }
+}
+
+fn describe(text: &mut String, device: &ListedDevice<'_>) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}  {}", device.device, device.title);
+    let mut line = |name: &str, words: String| {
+        if !words.is_empty() {
+            let _ = writeln!(text, "    {name:<10} {words}");
+        }
+    };
+    let number = |number: Option<u8>| number.map(|it| it.to_string()).unwrap_or_default();
+    line("ports", device.ports.join(", "));
+    line("node", number(device.node));
+    line("address", number(device.address));
+    line("features", device.features.join(", "));
+    line("deviates", device.deviations.join(", "));
+    line("variants", device.variants.join(", "));
+    line("faults", device.faults.len().to_string());
+}
+
+#[derive(Serialize)]
+struct ListedFault {
+    device: &'static str,
+    fault: &'static str,
+    breaks: &'static str,
+    words: &'static str,
+    caught_by: &'static str,
+}
+
+/// Lists the faults of the reference devices.
+pub(crate) fn faults(format: Format, screen: &mut Screen) -> Result<Exit, Complaint> {
+    let faults: Vec<ListedFault> = fieldproof_devices::kinds()
+        .iter()
+        .flat_map(|kind| {
+            kind.faults.iter().map(|fault| ListedFault {
+                device: kind.name,
+                fault: fault.name,
+                breaks: fault.breaks,
+                words: fault.words,
+                caught_by: fault.caught_by,
+            })
+        })
+        .collect();
+    match format {
+        Format::Json => screen.print_json(&faults),
+        Format::Text => {
+            let mut text = String::new();
+            let width = faults
+                .iter()
+                .map(|fault| fault.fault.len())
+                .max()
+                .unwrap_or(0);
+            let mut device = "";
+            for fault in &faults {
+                if fault.device != device {
+                    let gap = if device.is_empty() { "" } else { "\n" };
+                    let _ = writeln!(text, "{gap}{}", fault.device);
+                    device = fault.device;
+                }
+                let _ = writeln!(text, "  {:<width$}  {}", fault.fault, fault.words);
+                let _ = writeln!(text, "  {:<width$}  breaks {}", "", fault.breaks);
+            }
+            screen.print(&text);
+        }
+    }
+    Ok(Exit::Passed)
+}

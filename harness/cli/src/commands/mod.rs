@@ -1,0 +1,9 @@
+//! The commands.
+
+pub(crate) mod check;
+pub(crate) mod devices;
+pub(crate) mod export;
+pub(crate) mod list;
+pub(crate) mod prove;
+pub(crate) mod run;
+pub(crate) mod schema;

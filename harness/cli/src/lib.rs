@@ -1,0 +1,55 @@
+//! The program `fieldproof`: reads arguments, connects benches, prints, writes reports, exits. It is a library too, so
+//! that tests can play what it plays.
+
+mod bench;
+mod commands;
+mod complaint;
+mod embedded;
+mod exit;
+mod glob;
+mod input;
+mod library;
+mod options;
+mod player;
+mod problems;
+mod progress;
+mod reports;
+mod screen;
+mod select;
+mod stop;
+
+pub use bench::Behaviour;
+pub use complaint::Complaint;
+pub use exit::Exit;
+pub use library::{Device, Library};
+pub use options::{
+    CheckOptions, Color, Command, EffectName, Format, ListOptions, Options, ProveOptions,
+    RunOptions, SchemaKind, Selection,
+};
+pub use player::{Plan, play};
+
+use screen::Screen;
+
+/// Does what `options` say, and gives back what to exit with.
+pub fn main(options: &Options) -> Exit {
+    let mut screen = Screen::new(options.color);
+    let done = match &options.command {
+        Command::Run(options) => commands::run::run(options, &mut screen),
+        Command::List(options) => commands::list::list(options, &mut screen),
+        Command::Check(options) => commands::check::check(options, &mut screen),
+        Command::Schema { kind } => commands::schema::schema(*kind, &mut screen),
+        Command::Faults { format } => commands::devices::faults(*format, &mut screen),
+        Command::Devices { format } => commands::devices::devices(*format, &mut screen),
+        Command::Prove(options) => commands::prove::prove(options, &mut screen),
+        Command::Export { directory, force } => {
+            commands::export::export(directory, *force, &mut screen)
+        }
+    };
+    match done {
+        Ok(exit) => exit,
+        Err(complaint) => {
+            screen.complain(&complaint.problems);
+            complaint.exit
+        }
+    }
+}

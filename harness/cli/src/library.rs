@@ -1,0 +1,316 @@
+//! The suites and devices of a command: what the program carries, or what the user gave in its place.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use fieldproof_devices::DeviceKind;
+use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_dictionary::{Dictionary, eds};
+use fieldproof_report::{Problem, Severity};
+use fieldproof_suite::device::DeviceDescription;
+use fieldproof_suite::{Diagnostic, SourceFile, Suite};
+
+use crate::complaint::{Complaint, with_choice};
+use crate::embedded;
+use crate::input;
+use crate::options::Selection;
+use crate::problems;
+
+/// A device with everything that is known of it.
+pub struct Device {
+    /// What it claims.
+    pub description: DeviceDescription,
+    /// Its object dictionary, if it has a CANopen side.
+    pub dictionary: Option<Dictionary>,
+    /// The reference device of that name.
+    pub kind: &'static DeviceKind,
+}
+
+impl Device {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.description.device
+    }
+}
+
+/// Suites and devices, read and checked.
+pub struct Library {
+    /// The suites that are asked for, in the order they were named.
+    pub suites: Vec<Suite>,
+    /// The devices that are asked for, by name.
+    pub devices: Vec<Device>,
+    /// What is wrong with the files but does not keep them from being used.
+    pub warnings: Vec<Problem>,
+}
+
+impl Library {
+    /// Reads what `selection` asks for.
+    ///
+    /// # Errors
+    /// [`Complaint`]: a file is wrong or cannot be read, or there is nothing of a name.
+    pub fn load(selection: &Selection) -> Result<Library, Complaint> {
+        let mut reader = Reader::default();
+        reader.arguments(&selection.suites);
+        reader.read_suites();
+        reader.read_devices();
+        reader.finish(selection)
+    }
+}
+
+/// A folder that a description lies in, with the files beside it.
+enum Folder {
+    Embedded(String),
+    OnDisk(PathBuf),
+}
+
+impl Folder {
+    fn file(&self, name: &str) -> Result<SourceFile, Problem> {
+        match self {
+            Folder::OnDisk(folder) => input::read(&folder.join(name)),
+            Folder::Embedded(folder) => {
+                let path = format!("{folder}/{name}");
+                match embedded::text(&path) {
+                    Some(text) => Ok(source_file((path.as_str(), text))),
+                    None => {
+                        Err(Problem::new(Severity::Error, "there is no such file").in_file(path))
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn source_file((path, text): (&str, &str)) -> SourceFile {
+    SourceFile {
+        path: path.to_owned(),
+        text: text.to_owned(),
+    }
+}
+
+#[derive(Default)]
+struct Reader {
+    problems: Vec<Problem>,
+    /// Suite files in the order they were named.
+    files: Vec<SourceFile>,
+    seen: BTreeSet<PathBuf>,
+    descriptions: Vec<(SourceFile, Folder)>,
+    /// Names of embedded suites, or the beginnings of such.
+    names: Vec<String>,
+    suites: Vec<Suite>,
+    devices: BTreeMap<String, Device>,
+}
+
+impl Reader {
+    fn arguments(&mut self, arguments: &[String]) {
+        for argument in arguments {
+            let path = Path::new(argument);
+            let looks_like_a_path =
+                argument.contains(['/', '\\']) || input::is_yaml(path) || argument == ".";
+            if path.is_dir() {
+                self.folder(path);
+            } else if looks_like_a_path || path.exists() {
+                self.file(path);
+            } else {
+                self.names.push(argument.clone());
+            }
+        }
+    }
+
+    fn folder(&mut self, folder: &Path) {
+        match input::yaml_below(folder) {
+            Ok(files) if files.is_empty() => {
+                let problem = Problem::new(Severity::Error, "no suite (*.yaml) in this folder");
+                self.problems
+                    .push(problem.in_file(folder.display().to_string()));
+            }
+            Ok(files) => files.iter().for_each(|file| self.file(file)),
+            Err(problem) => self.problems.push(problem),
+        }
+    }
+
+    fn file(&mut self, path: &Path) {
+        let identity = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if !self.seen.insert(identity) {
+            return;
+        }
+        match input::read(path) {
+            Err(problem) => self.problems.push(problem),
+            Ok(file) if path.file_name().is_some_and(|name| name == "device.yaml") => {
+                let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+                self.descriptions.push((file, Folder::OnDisk(folder)));
+            }
+            Ok(file) => self.files.push(file),
+        }
+    }
+
+    fn read_suites(&mut self) {
+        let given = std::mem::take(&mut self.files);
+        if given.is_empty() && self.names.is_empty() || !self.names.is_empty() {
+            let carried: Vec<SourceFile> = embedded::files()
+                .filter(|(path, _)| path.starts_with("suites/"))
+                .map(source_file)
+                .collect();
+            self.carried_suites(&carried);
+        }
+        let suites = self.load(&given);
+        suites.into_iter().for_each(|suite| self.add(suite));
+    }
+
+    fn carried_suites(&mut self, files: &[SourceFile]) {
+        let suites = self.load(files);
+        let names = self.names.clone();
+        let known: Vec<&str> = suites
+            .iter()
+            .map(|suite| suite.head.suite.as_str())
+            .collect();
+        for name in &names {
+            if !known.iter().any(|id| id.starts_with(name.as_str())) {
+                let message = format!("no suite, file or folder is called \"{name}\"");
+                let problem = Problem::new(Severity::Error, message);
+                self.problems.push(with_choice(problem, name, &known));
+            }
+        }
+        for suite in suites {
+            let id = &suite.head.suite;
+            if names.is_empty() || names.iter().any(|name| id.starts_with(name.as_str())) {
+                self.add(suite);
+            }
+        }
+    }
+
+    fn load(&mut self, files: &[SourceFile]) -> Vec<Suite> {
+        let loaded = fieldproof_suite::load(files);
+        self.diagnostics(&loaded.diagnostics, files);
+        loaded.suites
+    }
+
+    fn diagnostics(&mut self, diagnostics: &[Diagnostic], files: &[SourceFile]) {
+        for diagnostic in diagnostics {
+            let file = files.iter().find(|file| file.path == diagnostic.path);
+            let text = file.map(|file| file.text.as_str()).unwrap_or_default();
+            self.problems
+                .push(problems::of_diagnostic(diagnostic, text));
+        }
+    }
+
+    fn add(&mut self, suite: Suite) {
+        let id = &suite.head.suite;
+        match self.suites.iter().find(|other| other.head.suite == *id) {
+            Some(other) => {
+                let message = format!("a second suite with the id \"{id}\"");
+                let problem = Problem::new(Severity::Error, message)
+                    .in_file(suite.path.clone())
+                    .note(format!("the first is in {}", other.path));
+                self.problems.push(problem);
+            }
+            None => self.suites.push(suite),
+        }
+    }
+
+    /// A description that the user gave takes the place of the one the program carries.
+    fn read_devices(&mut self) {
+        for (path, text) in embedded::files() {
+            if let Some(folder) = path.strip_suffix("/device.yaml") {
+                let file = source_file((path, text));
+                self.device(&file, &Folder::Embedded(folder.to_owned()));
+            }
+        }
+        for (file, folder) in std::mem::take(&mut self.descriptions) {
+            self.device(&file, &folder);
+        }
+    }
+
+    fn device(&mut self, file: &SourceFile, folder: &Folder) {
+        let description = match fieldproof_suite::load_device(file) {
+            Ok(description) => description,
+            Err(diagnostics) => return self.diagnostics(&diagnostics, std::slice::from_ref(file)),
+        };
+        let Some(kind) = fieldproof_devices::kind(&description.device) else {
+            let known: Vec<&str> = fieldproof_devices::kinds()
+                .iter()
+                .map(|kind| kind.name)
+                .collect();
+            let name = &description.device;
+            let message = format!("there is no reference device \"{name}\" to simulate it");
+            let problem = Problem::new(Severity::Error, message).in_file(file.path.clone());
+            self.problems.push(with_choice(problem, name, &known));
+            return;
+        };
+        let dictionary = description
+            .canopen
+            .as_ref()
+            .and_then(|canopen| self.dictionary(folder, &canopen.eds));
+        let map = description
+            .modbus
+            .as_ref()
+            .and_then(|modbus| modbus.registers.as_ref());
+        if let Some(map) = map {
+            self.register_map(folder, map);
+        }
+        let device = Device {
+            description,
+            dictionary,
+            kind,
+        };
+        self.devices.insert(device.name().to_owned(), device);
+    }
+
+    fn dictionary(&mut self, folder: &Folder, name: &str) -> Option<Dictionary> {
+        match folder.file(name) {
+            Ok(file) => {
+                let read = eds::read(&file.text);
+                let findings = read
+                    .findings
+                    .iter()
+                    .map(|it| problems::of_finding(it, &file.path, &file.text));
+                self.problems.extend(findings);
+                Some(read.dictionary)
+            }
+            Err(problem) => {
+                self.problems.push(problem);
+                None
+            }
+        }
+    }
+
+    fn register_map(&mut self, folder: &Folder, name: &str) {
+        match folder.file(name) {
+            Ok(file) => {
+                if let Err(error) = RegisterMap::parse(&file.text) {
+                    self.problems
+                        .push(problems::of_table_error(&error, &file.path, &file.text));
+                }
+            }
+            Err(problem) => self.problems.push(problem),
+        }
+    }
+
+    fn finish(self, selection: &Selection) -> Result<Library, Complaint> {
+        if self
+            .problems
+            .iter()
+            .any(|problem| problem.severity >= Severity::Error)
+        {
+            return Err(Complaint::inputs(self.problems));
+        }
+        let known: Vec<&str> = self.devices.keys().map(String::as_str).collect();
+        for name in &selection.devices {
+            if !self.devices.contains_key(name) {
+                return Err(Complaint::unknown("device", name, &known));
+            }
+        }
+        let devices = self
+            .devices
+            .into_values()
+            .filter(|device| {
+                selection.devices.is_empty()
+                    || selection.devices.iter().any(|name| name == device.name())
+            })
+            .collect();
+        Ok(Library {
+            suites: self.suites,
+            devices,
+            warnings: self.problems,
+        })
+    }
+}

@@ -1,0 +1,237 @@
+//! What can be written on the command line.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValue;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use fieldproof_run::effect_name;
+use fieldproof_suite::model::Effect;
+
+/// Plays conformance suites against CANopen and Modbus field devices.
+#[derive(Debug, Parser)]
+#[command(name = "fieldproof", version, max_term_width = 100, after_help = EXIT_CODES)]
+pub struct Options {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Whether output has colours.
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    pub color: Color,
+}
+
+const EXIT_CODES: &str = "Exit codes:
+  0  everything passed (documented deviations included, unless --strict)
+  1  something failed or was inconclusive
+  2  the input was wrong, or nothing was selected or played
+  3  the bench broke, or the run was interrupted";
+
+/// A command.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Play suites against devices and write reports
+    Run(RunOptions),
+    /// List the cases of the suites
+    List(ListOptions),
+    /// Read and check suites and device descriptions; play nothing
+    Check(CheckOptions),
+    /// Print a JSON Schema
+    Schema {
+        /// Of which kind of file.
+        #[arg(default_value = "suite")]
+        kind: SchemaKind,
+    },
+    /// List the faults that the reference devices can have, with the clause each breaks
+    Faults {
+        /// How to print them.
+        #[arg(long, default_value = "text")]
+        format: Format,
+    },
+    /// List the devices
+    Devices {
+        /// How to print them.
+        #[arg(long, default_value = "text")]
+        format: Format,
+    },
+    /// Play every suite against every fault and show which case catches which
+    Prove(ProveOptions),
+    /// Write the suites and device descriptions that the program carries into a folder
+    Export {
+        /// The folder.
+        directory: PathBuf,
+        /// Overwrite files that are there.
+        #[arg(long)]
+        force: bool,
+    },
+}
+
+/// Which suites, cases and devices.
+#[derive(Debug, Default, Args)]
+pub struct Selection {
+    /// Suites by id or the beginning of one (`canopen`, `canopen.nmt`), files, or folders; all that the program
+    /// carries if none is given. A `device.yaml` takes the place of the description of that device.
+    #[arg(value_name = "SUITE")]
+    pub suites: Vec<String>,
+    /// Only this device, by name; may be repeated.
+    #[arg(long = "device", value_name = "NAME")]
+    pub devices: Vec<String>,
+    /// Only cases whose id is like this, in which `*` stands for anything; may be repeated.
+    #[arg(long = "case", value_name = "PATTERN")]
+    pub cases: Vec<String>,
+}
+
+/// Options of `run`.
+#[derive(Debug, Args)]
+pub struct RunOptions {
+    /// What is played.
+    #[command(flatten)]
+    pub selection: Selection,
+    /// Show what would be played on what, and what is skipped and why.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Documented deviations fail, and only the strict abort codes pass.
+    #[arg(long)]
+    pub strict: bool,
+    /// Permit only these effects; a simulated bench permits all.
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
+    pub allow: Vec<EffectName>,
+    /// Do not permit these effects.
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
+    pub deny: Vec<EffectName>,
+    /// Switch this fault on in the reference devices that have it, and play only those.
+    #[arg(long, value_name = "NAME")]
+    pub fault: Option<String>,
+    /// Use this legal variant of the reference devices that have it, and play only those.
+    #[arg(long, value_name = "NAME", conflicts_with = "fault")]
+    pub variant: Option<String>,
+    /// The seed of everything that is drawn by lot, such as response times.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Where reports are written.
+    #[arg(long, value_name = "DIR", default_value = "reports")]
+    pub reports: PathBuf,
+    /// Show every case with its verdict and time, and deviations in full.
+    #[arg(long, short)]
+    pub verbose: bool,
+    /// Show only what did not pass, and the summary.
+    #[arg(long, short, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// How to print the outcome.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+/// Options of `list`.
+#[derive(Debug, Args)]
+pub struct ListOptions {
+    /// What is listed.
+    #[command(flatten)]
+    pub selection: Selection,
+    /// How to print it.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+/// Options of `check`.
+#[derive(Debug, Args)]
+pub struct CheckOptions {
+    /// Files or folders; what the program carries if none is given.
+    #[arg(value_name = "PATH")]
+    pub paths: Vec<String>,
+    /// How to print what is wrong.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+/// Options of `prove`.
+#[derive(Debug, Args)]
+pub struct ProveOptions {
+    /// What is played.
+    #[command(flatten)]
+    pub selection: Selection,
+    /// Only this fault; may be repeated.
+    #[arg(long = "fault", value_name = "NAME")]
+    pub faults: Vec<String>,
+    /// The seed of everything that is drawn by lot, such as response times.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// How to print the outcome.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+/// How something is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// Whether output has colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Color {
+    /// On a terminal that has them.
+    #[default]
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// Of which kind of file a schema is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SchemaKind {
+    /// A suite.
+    Suite,
+    /// A device description.
+    Device,
+    /// One line of a journal.
+    Journal,
+}
+
+/// An effect by its name in the suite language.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EffectName(pub Effect);
+
+/// All effects, in the order of the language's documentation.
+pub(crate) const EFFECTS: [Effect; 6] = [
+    Effect::Writes,
+    Effect::Persists,
+    Effect::Readdresses,
+    Effect::Moves,
+    Effect::Resets,
+    Effect::DisturbsBus,
+];
+
+impl ValueEnum for EffectName {
+    fn value_variants<'a>() -> &'a [EffectName] {
+        const NAMES: [EffectName; 6] = [
+            EffectName(EFFECTS[0]),
+            EffectName(EFFECTS[1]),
+            EffectName(EFFECTS[2]),
+            EffectName(EFFECTS[3]),
+            EffectName(EFFECTS[4]),
+            EffectName(EFFECTS[5]),
+        ];
+        &NAMES
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(effect_name(self.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn options_are_consistent() {
+        Options::command().debug_assert();
+    }
+}

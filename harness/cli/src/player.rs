@@ -1,0 +1,154 @@
+//! Plays one lane: the only place that calls the engine.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+
+use fieldproof_devices::UnknownFault;
+use fieldproof_link::Lane;
+use fieldproof_record::Sink;
+use fieldproof_run::{LaneJob, LaneOutcome, play_lane, skip_reason, suites_for};
+use fieldproof_suite::model::Effect;
+use fieldproof_suite::{Environment, Suite};
+
+use crate::bench::{self, Behaviour};
+use crate::glob;
+use crate::library::{Device, Library};
+use crate::options::EFFECTS;
+
+/// The tool and its version, as journals name it.
+pub(crate) const TOOL: &str = concat!("fieldproof ", env!("CARGO_PKG_VERSION"));
+
+/// What is played on a lane, beside the device.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Patterns for the ids of cases; none for all.
+    pub cases: Vec<String>,
+    /// What cases may do to the device.
+    pub permits: BTreeSet<Effect>,
+    /// Only the strict abort codes pass.
+    pub strict: bool,
+    /// Whether the device is opened after each case to see that it is as it was found.
+    pub inspects_device: bool,
+    /// How the reference device is built.
+    pub behaviour: Behaviour,
+}
+
+impl Default for Plan {
+    /// All cases, everything permitted, on a device as it is.
+    fn default() -> Plan {
+        Plan {
+            cases: Vec::new(),
+            permits: EFFECTS.into_iter().collect(),
+            strict: false,
+            inspects_device: true,
+            behaviour: Behaviour::default(),
+        }
+    }
+}
+
+impl Plan {
+    /// Whether the case called `id` is played.
+    pub fn selects(&self, id: &str) -> bool {
+        self.cases.is_empty() || self.cases.iter().any(|pattern| glob::matches(pattern, id))
+    }
+
+    /// The suites of `library` that `device` is tested with, each with the ids of its selected cases.
+    pub fn suites<'l>(
+        &self,
+        library: &'l Library,
+        device: &'l Device,
+    ) -> Vec<(&'l Suite, Vec<String>)> {
+        suites_for(&library.suites, &device.description)
+            .map(|suite| {
+                let ids = suite
+                    .cases()
+                    .map(|case| case.id())
+                    .filter(|id| self.selects(id));
+                (suite, ids.collect::<Vec<String>>())
+            })
+            .filter(|(_, ids)| !ids.is_empty())
+            .collect()
+    }
+}
+
+/// Plays the suites of `library` on `device` as `plan` says; `sink` is told everything. Stops early once `stop` is
+/// set.
+///
+/// # Errors
+/// The device has no such fault or variant.
+pub fn play(
+    library: &Library,
+    device: &Device,
+    plan: &Plan,
+    sink: &mut dyn Sink,
+    stop: &AtomicBool,
+) -> Result<LaneOutcome, UnknownFault> {
+    let mut lane = bench::connect(device, &plan.behaviour)?;
+    let bench = bench::bench(device, &lane, &plan.permits);
+    let behaviour = &plan.behaviour;
+    let job = LaneJob {
+        tool: TOOL,
+        name: device.name(),
+        device: &device.description,
+        dictionary: device.dictionary.as_ref(),
+        bench: &bench,
+        suites: &library.suites,
+        selects: &|id| plan.selects(id),
+        strict: plan.strict,
+        inspects_device: plan.inspects_device,
+        fault: behaviour.fault.as_deref(),
+        seed: behaviour.seed,
+    };
+    Ok(play_lane(&job, &mut lane, sink, stop))
+}
+
+/// A case that would be played or skipped.
+pub(crate) struct PlannedCase {
+    pub(crate) id: String,
+    pub(crate) title: String,
+    /// Why it would be skipped.
+    pub(crate) skipped: Option<String>,
+}
+
+/// What [`play`] would do, suite by suite, as far as it can be known beforehand.
+///
+/// # Errors
+/// The device has no such fault or variant.
+pub(crate) fn preview<'l>(
+    library: &'l Library,
+    device: &'l Device,
+    plan: &Plan,
+) -> Result<Vec<(&'l Suite, Vec<PlannedCase>)>, UnknownFault> {
+    let lane = bench::connect(device, &plan.behaviour)?;
+    let bench = bench::bench(device, &lane as &dyn Lane, &plan.permits);
+    let environment = Environment {
+        node: bench.node,
+        address: bench.address,
+    };
+    let planned = |suite: &'l Suite| {
+        let cases = suite.cases().filter(|case| plan.selects(&case.id()));
+        cases
+            .map(|case| match case.lower(&environment) {
+                Ok(lowered) => PlannedCase {
+                    skipped: skip_reason(
+                        &lowered,
+                        suite.head.protocol,
+                        &device.description,
+                        &bench,
+                    ),
+                    id: lowered.id,
+                    title: lowered.title,
+                },
+                Err(diagnostics) => PlannedCase {
+                    id: case.id(),
+                    title: String::new(),
+                    skipped: diagnostics.first().map(|first| first.message.clone()),
+                },
+            })
+            .collect::<Vec<_>>()
+    };
+    Ok(suites_for(&library.suites, &device.description)
+        .map(|suite| (suite, planned(suite)))
+        .filter(|(_, cases)| !cases.is_empty())
+        .collect())
+}

@@ -1,0 +1,65 @@
+//! Mistakes that other crates find, in the one form that is shown.
+
+use std::sync::Arc;
+
+use fieldproof_dictionary::eds::Finding;
+use fieldproof_dictionary::registers::TableError;
+use fieldproof_report::{Problem, Severity, SourceText, Span};
+use fieldproof_suite::{Diagnostic, Position};
+
+pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &str) -> Problem {
+    Problem {
+        severity: match diagnostic.severity {
+            fieldproof_suite::Severity::Error => Severity::Error,
+            fieldproof_suite::Severity::Warning => Severity::Warning,
+        },
+        code: Some(diagnostic.code.to_owned()),
+        message: diagnostic.message.clone(),
+        path: diagnostic.path.clone(),
+        at: span(diagnostic.at),
+        source: SourceText::Whole(Arc::from(text)),
+        label: diagnostic.label.clone(),
+        also: diagnostic
+            .also
+            .iter()
+            .map(|(at, words)| (span(*at), words.clone()))
+            .collect(),
+        notes: Vec::new(),
+        help: diagnostic.help.clone(),
+    }
+}
+
+pub(crate) fn of_finding(finding: &Finding, path: &str, text: &str) -> Problem {
+    whole_line(
+        Severity::Warning,
+        finding.line,
+        finding.text.clone(),
+        path,
+        text,
+    )
+    .help(finding.help.clone())
+}
+
+pub(crate) fn of_table_error(error: &TableError, path: &str, text: &str) -> Problem {
+    whole_line(Severity::Error, error.line, error.text.clone(), path, text)
+}
+
+fn whole_line(severity: Severity, line: usize, message: String, path: &str, text: &str) -> Problem {
+    Problem {
+        at: Span {
+            line: u32::try_from(line).unwrap_or(0),
+            column: 0,
+            end_column: 0,
+        },
+        source: SourceText::Whole(Arc::from(text)),
+        ..Problem::new(severity, message).in_file(path)
+    }
+}
+
+fn span(at: Position) -> Span {
+    Span {
+        line: at.line,
+        column: at.column,
+        end_column: at.end_column,
+    }
+}

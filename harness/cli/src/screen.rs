@@ -1,0 +1,60 @@
+//! What is shown on the terminal.
+
+use std::io::{self, IsTerminal, Write};
+
+use anstream::{AutoStream, ColorChoice};
+use fieldproof_report::{Ink, Problem, render};
+
+use crate::options::Color;
+
+/// Standard output and error. Everything is given with colours, and these are taken out where they do not belong. Once
+/// nobody reads an output any more (`| head`), what follows is dropped without a word.
+pub(crate) struct Screen {
+    out: AutoStream<io::Stdout>,
+    error: AutoStream<io::Stderr>,
+}
+
+/// The ink that everything for a [`Screen`] is made with.
+pub(crate) const INK: Ink = Ink::Coloured;
+
+impl Screen {
+    pub(crate) fn new(color: Color) -> Screen {
+        let choice = match color {
+            Color::Auto => ColorChoice::Auto,
+            Color::Always => ColorChoice::Always,
+            Color::Never => ColorChoice::Never,
+        };
+        Screen {
+            out: AutoStream::new(io::stdout(), choice),
+            error: AutoStream::new(io::stderr(), choice),
+        }
+    }
+
+    /// Whether a progress bar makes sense.
+    pub(crate) fn shows_progress() -> bool {
+        io::stderr().is_terminal()
+    }
+
+    /// Prints `text` as it is.
+    pub(crate) fn print(&mut self, text: &str) {
+        let _ = self.out.write_all(text.as_bytes());
+        let _ = self.out.flush();
+    }
+
+    /// Prints `value` as JSON.
+    pub(crate) fn print_json(&mut self, value: &impl serde::Serialize) {
+        // Our own values have text keys only and cannot fail.
+        let text = serde_json::to_string_pretty(value).unwrap_or_default();
+        self.print(&format!("{text}\n"));
+    }
+
+    /// Prints `problems` to standard error.
+    pub(crate) fn complain(&mut self, problems: &[Problem]) {
+        for (index, problem) in problems.iter().enumerate() {
+            let gap = if index == 0 { "" } else { "\n" };
+            let text = render(problem, INK);
+            let _ = write!(self.error, "{gap}{text}");
+        }
+        let _ = self.error.flush();
+    }
+}
