@@ -46,12 +46,13 @@ impl Frame {
     pub fn crc15(&self) -> u16 {
         let (header, _) = self.header();
         // Leading zeros change nothing in this CRC, so the header is taken as whole bytes.
-        let crc = if self.id().is_extended() {
-            crc15_update(0, &header.to_be_bytes()[3..])
-        } else {
-            crc15_update(0, &header.to_be_bytes()[5..])
-        };
-        crc15_update(crc, self.bytes())
+        let header = header.to_be_bytes();
+        crc15(&header[self.header_start()..], self.bytes())
+    }
+
+    /// Where in 8 bytes a right-aligned header begins.
+    fn header_start(&self) -> usize {
+        if self.id().is_extended() { 3 } else { 5 }
     }
 
     fn stuffed_part_bits(&self) -> u32 {
@@ -82,51 +83,68 @@ impl Frame {
         let (header, bits) = self.header();
         // Filled up to whole bytes in front with alternating bits of which the last is recessive: the start of frame
         // then begins a run, and nothing is stuffed before it.
-        let filled = header | 0x5555_5555_5555_5555 << bits;
-        let first = if self.id().is_extended() { 3 } else { 5 };
-        let mut counter = StuffCounter::START;
-        counter.take(&filled.to_be_bytes()[first..]);
-        counter.take(self.bytes());
+        let filled = (header | 0x5555_5555_5555_5555 << bits).to_be_bytes();
         // Filled up behind with the opposite of the last bit, which can never be the fifth of a run.
         let crc = self.crc15();
-        counter.take(&(crc << 1 | (!crc & 1)).to_be_bytes());
+        let crc = (crc << 1 | (!crc & 1)).to_be_bytes();
+        let mut counter = StuffCounter::START;
+        counter.take(&filled[self.header_start()..]);
+        counter.take(self.bytes());
+        counter.take(&crc);
         counter.stuffed
     }
 }
 
-fn crc15_update(crc: u16, bytes: &[u8]) -> u16 {
-    bytes.iter().fold(crc, |crc, byte| {
-        let index = (crc >> 7) as u8 ^ byte;
-        (crc << 8 & 0x7FFF) ^ CRC_TABLE[usize::from(index)]
-    })
+/// The CRC of `header` and `data` together, 13 bytes at most. It is the sum of what each byte alone would give in its
+/// place, so that no look-up waits for another.
+fn crc15(header: &[u8], data: &[u8]) -> u16 {
+    let sum = |bytes: &[u8], after: usize| {
+        let tables = CRC_TABLES[after..].iter();
+        let bytes = bytes.iter().rev().zip(tables);
+        bytes.fold(0, |crc, (byte, table)| crc ^ table[usize::from(*byte)])
+    };
+    sum(header, data.len()) ^ sum(data, 0)
 }
 
-const CRC_TABLE: [u16; 256] = crc_table();
+/// A header of 5 bytes and 8 bytes of data.
+const LONGEST: usize = 13;
 
-const fn crc_table() -> [u16; 256] {
-    let mut table = [0; 256];
-    let mut index = 0;
-    while index < 256 {
-        let mut crc = (index as u16) << 7;
-        let mut bit = 0;
-        while bit < 8 {
-            let carry = crc & 0x4000 != 0;
-            crc = crc << 1 & 0x7FFF;
-            if carry {
-                crc ^= CRC_POLYNOMIAL;
+/// By the number of bytes after it and its value: the CRC of a byte.
+static CRC_TABLES: [[u16; 256]; LONGEST] = crc_tables();
+
+const fn crc_tables() -> [[u16; 256]; LONGEST] {
+    let mut tables = [[0; 256]; LONGEST];
+    let mut after = 0;
+    while after < LONGEST {
+        let mut byte = 0;
+        while byte < 256 {
+            let mut crc = if after == 0 {
+                (byte as u16) << 7
+            } else {
+                tables[after - 1][byte]
+            };
+            let mut bit = 0;
+            while bit < 8 {
+                let carry = crc & 0x4000 != 0;
+                crc = crc << 1 & 0x7FFF;
+                if carry {
+                    crc ^= CRC_POLYNOMIAL;
+                }
+                bit += 1;
             }
-            bit += 1;
+            tables[after][byte] = crc;
+            byte += 1;
         }
-        table[index] = crc;
-        index += 1;
+        after += 1;
     }
-    table
+    tables
 }
 
 /// Counts stuff bits. Its state is the level of the last bit on the bus and the length of the run that it ends, `1..=4`
-/// (the fifth is followed at once by a stuff bit, which begins a run): bit 2 and bits 1..0 of the state.
+/// (the fifth is followed at once by a stuff bit, which begins a run): bit 2 and bits 1..0, both in bits 10..8 of
+/// `state`, ready for [`STUFF_TABLE`].
 struct StuffCounter {
-    state: u8,
+    state: u16,
     stuffed: u32,
 }
 
@@ -139,38 +157,34 @@ impl StuffCounter {
 
     fn take(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            let entry = STUFF_TABLE[usize::from(self.state)][usize::from(*byte)];
-            self.state = entry & 7;
-            self.stuffed += u32::from(entry >> 3);
+            let entry = STUFF_TABLE[usize::from(self.state & 0x700 | u16::from(*byte))];
+            self.state = entry;
+            self.stuffed += u32::from(entry & 0xFF);
         }
     }
 }
 
-/// By state and byte: the next state in bits 2..0, the number of stuff bits above.
-const STUFF_TABLE: [[u8; 256]; 8] = stuff_table();
+/// By state (bits 10..8) and byte: the next state in bits 10..8, the number of stuff bits in bits 7..0.
+static STUFF_TABLE: [u16; 8 * 256] = stuff_table();
 
-const fn stuff_table() -> [[u8; 256]; 8] {
-    let mut table = [[0; 256]; 8];
-    let mut state = 0;
-    while state < 8 {
-        let mut byte = 0;
-        while byte < 256 {
-            table[state][byte] = stuff_entry(state as u8, byte as u8);
-            byte += 1;
-        }
-        state += 1;
+const fn stuff_table() -> [u16; 8 * 256] {
+    let mut table = [0; 8 * 256];
+    let mut index = 0;
+    while index < table.len() {
+        table[index] = stuff_entry((index >> 8) as u16, index as u8);
+        index += 1;
     }
     table
 }
 
-const fn stuff_entry(state: u8, byte: u8) -> u8 {
+const fn stuff_entry(state: u16, byte: u8) -> u16 {
     let mut level = state >> 2;
     let mut run = (state & 3) + 1;
     let mut stuffed = 0;
     let mut shift = 8;
     while shift > 0 {
         shift -= 1;
-        let bit = byte >> shift & 1;
+        let bit = (byte >> shift & 1) as u16;
         run = if bit == level { run + 1 } else { 1 };
         level = bit;
         if run == 5 {
@@ -179,7 +193,7 @@ const fn stuff_entry(state: u8, byte: u8) -> u8 {
             run = 1;
         }
     }
-    stuffed << 3 | level << 2 | (run - 1)
+    (level << 2 | (run - 1)) << 8 | stuffed
 }
 
 #[cfg(test)]
@@ -257,7 +271,7 @@ mod tests {
     #[test]
     fn crc15_has_its_published_check_value() {
         // CRC-15/CAN in the catalogue of parametrised CRC algorithms: check 059E.
-        assert_eq!(crc15_update(0, b"123456789"), 0x059E);
+        assert_eq!(crc15(b"1234", b"56789"), 0x059E);
     }
 
     #[test]
