@@ -200,15 +200,16 @@ impl Objects {
         self.addresses.iter().copied().zip(&self.objects)
     }
 
-    /// The values of `indexes` that can be written and are not what a reset without saved values gives.
+    /// The parameters of `indexes` that are not what a reset without saved values gives. What a PDO can carry is no
+    /// parameter.
     pub(crate) fn differing(
         &self,
         indexes: &std::ops::RangeInclusive<u16>,
         node: u8,
     ) -> BTreeMap<Address, Vec<u8>> {
-        let candidates = self
-            .iter()
-            .filter(|(address, object)| object.writable && indexes.contains(&address.index()));
+        let candidates = self.iter().filter(|(address, object)| {
+            object.writable && !object.mappable && indexes.contains(&address.index())
+        });
         candidates
             .filter_map(|(address, _)| {
                 Some((address, self.unless_default(address, node)?.to_vec()))

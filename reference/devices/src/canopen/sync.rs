@@ -33,6 +33,9 @@ pub(super) fn check(profile: &Profile, present: u32, value: u32) -> Result<(), A
     Ok(())
 }
 
+/// A shorter cycle period is kept as this one: no bus carries more.
+const SHORTEST_PERIOD: Duration = Duration::from_micros(200);
+
 /// What a slave knows of SYNC.
 #[derive(Debug, Default)]
 pub(super) struct Sync {
@@ -49,7 +52,7 @@ impl Slave {
         let period = self.objects.number(CYCLE).unwrap_or(0);
         let low = |cob_id: u32| u16::try_from(cob_id & 0x7FF).ok();
         self.sync.identifier = cob_id.and_then(low);
-        self.sync.period = Duration::from_micros(u64::from(period));
+        self.sync.period = Duration::from_micros(u64::from(period)).max(SHORTEST_PERIOD);
         let asked = cob_id.is_some_and(|cob_id| cob_id & PRODUCES != 0);
         let goes_on = self.sync.next.is_some() && !self.behaviour.sync_can_be_stopped;
         let produces = (asked || goes_on) && period != 0;
