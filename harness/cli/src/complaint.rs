@@ -58,12 +58,30 @@ impl Complaint {
 pub(crate) fn with_choice(problem: Problem, name: &str, known: &[&str]) -> Problem {
     let problem = match known {
         [] => problem,
-        _ => problem.note(format!("there are: {}", known.join(", "))),
+        _ => problem.note(format!("there are: {}", wrapped(known))),
     };
     match nearest(name, known) {
         Some(nearest) => problem.help(format!("did you mean \"{nearest}\"?")),
         None => problem,
     }
+}
+
+/// `names` with commas, in lines that are not too long.
+fn wrapped(names: &[&str]) -> String {
+    const LONGEST: usize = 90;
+    let mut text = String::new();
+    let mut column = 0;
+    for (index, name) in names.iter().enumerate() {
+        if index > 0 {
+            text.push(',');
+            let full = column + name.len() > LONGEST;
+            text.push(if full { '\n' } else { ' ' });
+            column = if full { 0 } else { column };
+        }
+        text.push_str(name);
+        column += name.len() + 2;
+    }
+    text
 }
 
 /// The one of `known` that `name` was most likely meant to be.

@@ -23,6 +23,8 @@ pub(crate) const TOOL: &str = concat!("fieldproof ", env!("CARGO_PKG_VERSION"));
 pub struct Plan {
     /// Patterns for the ids of cases; none for all.
     pub cases: Vec<String>,
+    /// Ids of cases that are left out nevertheless.
+    pub except: BTreeSet<String>,
     /// What cases may do to the device.
     pub permits: BTreeSet<Effect>,
     /// Only the strict abort codes pass.
@@ -38,6 +40,7 @@ impl Default for Plan {
     fn default() -> Plan {
         Plan {
             cases: Vec::new(),
+            except: BTreeSet::new(),
             permits: EFFECTS.into_iter().collect(),
             strict: false,
             inspects_device: true,
@@ -49,7 +52,8 @@ impl Default for Plan {
 impl Plan {
     /// Whether the case called `id` is played.
     pub fn selects(&self, id: &str) -> bool {
-        self.cases.is_empty() || self.cases.iter().any(|pattern| glob::matches(pattern, id))
+        let is_like = |pattern: &String| glob::matches(pattern, id);
+        (self.cases.is_empty() || self.cases.iter().any(is_like)) && !self.except.contains(id)
     }
 
     /// The suites of `library` that `device` is tested with, each with the ids of its selected cases.

@@ -184,9 +184,10 @@ fn suite_line(device: &str, name_width: usize, suite: &SuiteSummary, ink: Ink) -
     let counts = suite.counts;
     let time = short_seconds(suite.lane_time_ns);
     let mut line = format!(
-        "{device:<name_width$}  {:<36} {:>5} cases {time:>13}  {:>5} pass",
+        "{device:<name_width$}  {:<36} {:>5} {:<5} {time:>13}  {:>5} pass",
         suite.suite,
         counts.total(),
+        if counts.total() == 1 { "case" } else { "cases" },
         counts.pass
     );
     for verdict in Verdict::ALL

@@ -121,12 +121,22 @@ fn rounds<'l>(
     Ok(rounds)
 }
 
-/// The verdicts of a round by case as written, its rows taken together.
+/// What a round came to, by case as written, its rows taken together.
 #[derive(Debug, Default)]
 struct Tally {
     case: String,
-    cases: BTreeMap<String, VerdictCounts>,
-    stopped: Option<String>,
+    cases: BTreeMap<String, CaseTally>,
+    /// The ids of all cases that were tried.
+    tried: BTreeSet<String>,
+    /// Why lanes ended before their last case.
+    stops: Vec<String>,
+}
+
+#[derive(Debug, Default)]
+struct CaseTally {
+    counts: VerdictCounts,
+    /// Whether the device was found wrong in at least one row, be it that more happened afterwards.
+    found_wrong: bool,
 }
 
 impl Sink for Tally {
@@ -134,25 +144,62 @@ impl Sink for Tally {
         match event {
             Event::CaseStarted(case) => self.case = case.written_id,
             Event::CaseFinished(case) => {
-                self.cases
-                    .entry(self.case.clone())
-                    .or_default()
-                    .add(case.verdict);
+                let tally = self.cases.entry(self.case.clone()).or_default();
+                tally.counts.add(case.verdict);
+                tally.found_wrong |= case.verdict == Verdict::Fail
+                    || case
+                        .failures
+                        .iter()
+                        .any(|failure| failure.verdict == Verdict::Fail);
+                self.tried.insert(case.id);
             }
-            Event::LaneFinished(lane) => self.stopped = lane.stopped,
+            Event::LaneFinished(lane) => self.stops.extend(lane.stopped),
             _ => {}
         }
     }
 }
 
 impl Tally {
+    /// The cases in which the device was found wrong.
+    fn found_wrong(&self) -> Vec<String> {
+        self.those(|tally| tally.found_wrong)
+    }
+
     /// The cases that had `verdict` in at least one row.
     fn with(&self, verdict: Verdict) -> Vec<String> {
-        let had = self
-            .cases
-            .iter()
-            .filter(|(_, counts)| counts.of(verdict) > 0);
-        had.map(|(id, _)| id.clone()).collect()
+        self.those(|tally| tally.counts.of(verdict) > 0)
+    }
+
+    fn those(&self, belongs: impl Fn(&CaseTally) -> bool) -> Vec<String> {
+        let those = self.cases.iter().filter(|(_, tally)| belongs(tally));
+        those.map(|(id, _)| id.clone()).collect()
+    }
+}
+
+/// Plays one round. A device that cannot be put back stops its lane; the cases after that one are played on a fresh
+/// device, for each is to show what it catches.
+fn play_round(
+    library: &Library,
+    plan: &Plan,
+    round: &Round<'_>,
+    stop: &AtomicBool,
+) -> Result<Tally, Complaint> {
+    let mut tally = Tally::default();
+    let mut plan = Plan {
+        behaviour: round.behaviour.clone(),
+        ..plan.clone()
+    };
+    loop {
+        let stops = tally.stops.len();
+        let tried = tally.tried.len();
+        player::play(library, round.device, &plan, &mut tally, stop)
+            .map_err(|error| Complaint::bench(error.to_string()))?;
+        let whole = tally.stops.len() == stops;
+        let nothing_new = tally.tried.len() == tried;
+        if whole || nothing_new || stop.load(Ordering::Relaxed) {
+            return Ok(tally);
+        }
+        plan.except.clone_from(&tally.tried);
     }
 }
 
@@ -173,13 +220,7 @@ fn play_all(
             let Some(round) = rounds.get(index) else {
                 return Ok(());
             };
-            let mut tally = Tally::default();
-            let plan = Plan {
-                behaviour: round.behaviour.clone(),
-                ..plan.clone()
-            };
-            player::play(library, round.device, &plan, &mut tally, stop)
-                .map_err(|error| Complaint::bench(error.to_string()))?;
+            let tally = play_round(library, plan, round, stop)?;
             done.lock()
                 .unwrap_or_else(PoisonError::into_inner)
                 .insert(index, tally);
@@ -229,9 +270,10 @@ struct Finding {
     failed: Vec<String>,
     inconclusive: Vec<String>,
     error: Vec<String>,
-    /// Why the lane ended before its last case.
-    stopped: Option<String>,
-    played: usize,
+    /// Why the device could not be used any more; the cases after that were played on a fresh one.
+    stops: Vec<String>,
+    /// Cases as written that were played or skipped.
+    cases: usize,
 }
 
 impl Finding {
@@ -239,7 +281,7 @@ impl Finding {
         self.failed.is_empty()
             && self.inconclusive.is_empty()
             && self.error.is_empty()
-            && self.stopped.is_none()
+            && self.stops.is_empty()
     }
 }
 
@@ -250,13 +292,11 @@ fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
     // Of the device as it is.
     let mut fails_anyway: Vec<String> = Vec::new();
     for (round, tally) in rounds.iter().zip(tallies) {
-        let mut failed = tally.with(Verdict::Fail);
+        let mut failed = tally.found_wrong();
         match round.guise {
             Guise::AsItIs => {
                 fails_anyway.clone_from(&failed);
-                let was_played = |counts: &VerdictCounts| counts.total() > counts.skipped;
-                let cases = tally.cases.iter().filter(|(_, counts)| was_played(counts));
-                played.extend(cases.map(|(id, _)| id.clone()));
+                played.extend(tally.those(|it| it.counts.total() > it.counts.skipped));
             }
             Guise::Variant(_) => {}
             Guise::Fault(_) => {
@@ -271,8 +311,8 @@ fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
             failed,
             inconclusive: tally.with(Verdict::Inconclusive),
             error: tally.with(Verdict::Error),
-            stopped: tally.stopped.clone(),
-            played: tally.cases.len(),
+            stops: tally.stops.clone(),
+            cases: tally.cases.len(),
         });
     }
     let uncaught: Vec<(String, &'static str)> = findings

@@ -104,6 +104,7 @@ fn plan(options: &RunOptions) -> Plan {
     });
     Plan {
         cases: options.selection.cases.clone(),
+        except: BTreeSet::new(),
         permits,
         strict: options.strict,
         inspects_device: true,

@@ -76,7 +76,7 @@ fn round(text: &mut String, finding: &Finding) {
     } else if finding.passes() {
         parts.push(paint(
             Verdict::Pass,
-            format!("{} cases, nothing wrong", finding.played),
+            format!("{} cases, nothing wrong", finding.cases),
         ));
     } else if !finding.failed.is_empty() {
         parts.push(paint(
@@ -92,12 +92,10 @@ fn round(text: &mut String, finding: &Finding) {
             parts.push(paint(verdict, format!("{verdict}: {}", named(cases))));
         }
     }
-    parts.extend(
-        finding
-            .stopped
-            .as_ref()
-            .map(|why| format!("stopped: {why}")),
-    );
+    if let Some(first) = finding.stops.first() {
+        let times = finding.stops.len();
+        parts.push(format!("taken afresh {times} times: {first}"));
+    }
     let mut parts = parts.into_iter();
     let first = parts.next().unwrap_or_default();
     say(text, format_args!("  {name:<36}  {first}\n"));
