@@ -1,1 +1,28 @@
-//! TODO
+//! Plays cases step by step against a device over a lane, and emits what happens as events of the record.
+//!
+//! [`play_lane`] is the whole of it: it finds the device, then for each case that applies ([`skip_reason`]) brings the
+//! device there, plays control and steps, judges what came and nobody expected, and puts everything back. It never asks
+//! which kind of link it is on; what differs it reads from the ports' properties.
+
+mod applies;
+mod case;
+mod companions;
+mod excerpt;
+mod lane;
+mod limits;
+mod modbus;
+mod node;
+mod pdo_procedure;
+mod relocate;
+mod restore;
+mod sdo;
+mod serial;
+mod session;
+mod steps;
+mod stop;
+mod tester;
+mod unexpected;
+mod value;
+
+pub use applies::{Bench, effect_name, feature_name, skip_reason};
+pub use lane::{LaneJob, LaneOutcome, play_lane, suites_for};

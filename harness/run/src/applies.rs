@@ -1,0 +1,148 @@
+//! Whether a case can be played here at all, and why not.
+
+use std::collections::BTreeSet;
+
+use fieldproof_link::StimulusKind;
+use fieldproof_suite::device::{DeviceDescription, Feature};
+use fieldproof_suite::model::{Case, Effect, Need, Protocol, StimulusName};
+
+/// What the bench has and permits.
+#[derive(Debug, Clone)]
+pub struct Bench {
+    /// The roles of the ports it has connected.
+    pub ports: BTreeSet<String>,
+    /// The stimuli it offers.
+    pub stimuli: BTreeSet<StimulusKind>,
+    /// The effects it permits.
+    pub permits: BTreeSet<Effect>,
+    /// The device's node-ID on this bench.
+    pub node: Option<u8>,
+    /// The device's Modbus address on this bench.
+    pub address: Option<u8>,
+}
+
+/// Why `case` of a suite in `protocol` is skipped here; `None` if it is played.
+pub fn skip_reason(
+    case: &Case,
+    protocol: Protocol,
+    device: &DeviceDescription,
+    bench: &Bench,
+) -> Option<String> {
+    missing_port(protocol, bench)
+        .or_else(|| missing_need(case, device, bench))
+        .or_else(|| missing_permission(case, device, bench))
+        .or_else(|| wrong_address(case, bench))
+}
+
+fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
+    let roles: &[&str] = match protocol {
+        Protocol::Canopen => &["can"],
+        Protocol::Modbus => &["serial"],
+        Protocol::Gateway => &["can", "inverter"],
+    };
+    roles
+        .iter()
+        .find(|role| !bench.ports.contains(**role))
+        .map(|role| format!("no port {role:?}"))
+}
+
+fn missing_need(case: &Case, device: &DeviceDescription, bench: &Bench) -> Option<String> {
+    case.needs.iter().find_map(|need| match need {
+        Need::Feature(feature) if !device.features.contains(feature) => Some(format!(
+            "the device does not claim {}",
+            feature_name(*feature)
+        )),
+        Need::Stimulus(name) if !bench.stimuli.contains(&kind(*name)) => Some(format!(
+            "the bench does not offer the stimulus {}",
+            stimulus_name(*name)
+        )),
+        _ => None,
+    })
+}
+
+fn missing_permission(case: &Case, device: &DeviceDescription, bench: &Bench) -> Option<String> {
+    case.effects
+        .iter()
+        .find(|effect| !bench.permits.contains(effect))
+        .map(|effect| {
+            let danger = device
+                .dangers
+                .get(effect)
+                .map(|words| format!(" ({words})"))
+                .unwrap_or_default();
+            format!("the bench does not permit {}{danger}", effect_name(*effect))
+        })
+}
+
+fn wrong_address(case: &Case, bench: &Bench) -> Option<String> {
+    if bench.stimuli.contains(&StimulusKind::Setting) {
+        return None;
+    }
+    let written_for = case.written_for;
+    if let Some(address) = written_for.address
+        && bench.address != Some(address)
+    {
+        return Some(format!(
+            "written for address {address}, which the device does not have here"
+        ));
+    }
+    match written_for.node {
+        Some(node) if written_for.fixed && bench.node != Some(node) => Some(format!(
+            "written for node {node}, which the device does not have here"
+        )),
+        _ => None,
+    }
+}
+
+const fn kind(name: StimulusName) -> StimulusKind {
+    match name {
+        StimulusName::Power => StimulusKind::Power,
+        StimulusName::ProcessValue => StimulusKind::ProcessValue,
+        StimulusName::Condition => StimulusKind::Condition,
+        StimulusName::Setting => StimulusKind::Setting,
+    }
+}
+
+const fn stimulus_name(name: StimulusName) -> &'static str {
+    match name {
+        StimulusName::Power => "power",
+        StimulusName::ProcessValue => "process-value",
+        StimulusName::Condition => "condition",
+        StimulusName::Setting => "setting",
+    }
+}
+
+/// The word of the suite language for an effect.
+pub const fn effect_name(effect: Effect) -> &'static str {
+    match effect {
+        Effect::Writes => "writes",
+        Effect::Persists => "persists",
+        Effect::Readdresses => "readdresses",
+        Effect::Moves => "moves",
+        Effect::Resets => "resets",
+        Effect::DisturbsBus => "disturbs-bus",
+    }
+}
+
+/// The word of the suite language for a feature.
+pub const fn feature_name(feature: Feature) -> &'static str {
+    match feature {
+        Feature::NmtSlave => "nmt-slave",
+        Feature::HeartbeatProducer => "heartbeat-producer",
+        Feature::NodeGuarding => "node-guarding",
+        Feature::SdoServer => "sdo-server",
+        Feature::SdoSegmented => "sdo-segmented",
+        Feature::SdoBlock => "sdo-block",
+        Feature::Tpdo => "tpdo",
+        Feature::Rpdo => "rpdo",
+        Feature::DynamicMapping => "dynamic-mapping",
+        Feature::SyncConsumer => "sync-consumer",
+        Feature::SyncProducer => "sync-producer",
+        Feature::Emergency => "emergency",
+        Feature::Lss => "lss",
+        Feature::ModbusRtu => "modbus-rtu",
+        Feature::ModbusTcp => "modbus-tcp",
+        Feature::Ssi => "ssi",
+        Feature::Gateway => "gateway",
+    }
+}

@@ -1,0 +1,423 @@
+//! One lane: all cases that apply to one device, in order.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use fieldproof_dictionary::Dictionary;
+use fieldproof_link::{Lane, Line, Parity, StopBits};
+use fieldproof_record::{
+    CaseFinished, CaseStarted, Cite, Event, FORMAT, Failure, LaneFinished, LaneStarted, Place,
+    PortInfo, Sink, SuiteFinished, SuiteStarted, Verdict, VerdictCounts,
+};
+use fieldproof_suite::device::{DeviceDescription, Feature};
+use fieldproof_suite::model::{Case, Citation, NmtState};
+use fieldproof_suite::{CaseRef, Environment, Position, Suite};
+use fieldproof_wire::canopen::{Multiplexer, NodeId};
+
+use crate::applies::{Bench, effect_name, skip_reason};
+use crate::case::CaseOutcome;
+use crate::node::NodeWatch;
+use crate::relocate::relocate;
+use crate::restore::UndoStack;
+use crate::session::Session;
+use crate::steps::main_role;
+use crate::stop::Stop;
+use crate::tester::Tester;
+use crate::value::Saved;
+
+/// Everything about a lane that does not change while it is played.
+pub struct LaneJob<'a> {
+    /// The tool and its version.
+    pub tool: &'a str,
+    /// The lane's name: the device's name on the bench.
+    pub name: &'a str,
+    /// The device's claim.
+    pub device: &'a DeviceDescription,
+    /// Its object dictionary, if it is a CANopen device.
+    pub dictionary: Option<&'a Dictionary>,
+    /// What the bench has and permits.
+    pub bench: &'a Bench,
+    /// All suites; those for other devices are left out.
+    pub suites: &'a [Suite],
+    /// Which cases are played, by id.
+    pub selects: &'a (dyn Fn(&str) -> bool + Sync),
+    /// Only the strict abort codes pass.
+    pub strict: bool,
+    /// Whether the device is opened after each case to see that it is as it was found, where a lane can do that
+    /// ([`Lane::device_state`]).
+    pub inspects_device: bool,
+    /// The fault switched on in a reference device, for the record.
+    pub fault: Option<&'a str>,
+    /// The seed of the run, for the record.
+    pub seed: u64,
+}
+
+/// How a lane ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LaneOutcome {
+    /// The verdicts.
+    pub counts: VerdictCounts,
+    /// Why it ended before its last case.
+    pub stopped: Option<String>,
+}
+
+/// The suites that a device is tested with: those for any device and those for it.
+pub fn suites_for<'s>(
+    suites: &'s [Suite],
+    device: &'s DeviceDescription,
+) -> impl Iterator<Item = &'s Suite> {
+    suites.iter().filter(|suite| {
+        suite
+            .head
+            .device
+            .as_ref()
+            .is_none_or(|name| *name == device.device)
+    })
+}
+
+/// Plays every selected case on `lane`, in the order of the files, and tells `sink` what happens. Stops early when
+/// `stop` is set, when the link fails, or when the device cannot be put back; it is put back even then.
+pub fn play_lane(
+    job: &LaneJob<'_>,
+    lane: &mut dyn Lane,
+    sink: &mut dyn Sink,
+    stop: &AtomicBool,
+) -> LaneOutcome {
+    sink.emit(Event::LaneStarted(Box::new(lane_started(job, lane))));
+    let mut player = Player::new(job, lane, sink, stop);
+    player.find_device();
+    for suite in suites_for(job.suites, job.device) {
+        if player.outcome.stopped.is_some() {
+            break;
+        }
+        player.play_suite(suite);
+    }
+    let outcome = player.outcome;
+    let at_ns = player.tester.session.now().as_nanos();
+    let finished = LaneFinished {
+        at_ns,
+        counts: outcome.counts,
+        stopped: outcome.stopped.clone(),
+    };
+    player
+        .tester
+        .session
+        .emit(Event::LaneFinished(Box::new(finished)));
+    outcome
+}
+
+struct Player<'a> {
+    job: &'a LaneJob<'a>,
+    stop: &'a AtomicBool,
+    tester: Tester<'a>,
+    environment: Environment,
+    /// The NMT state the device was found in.
+    as_found: Option<NmtState>,
+    outcome: LaneOutcome,
+}
+
+impl<'a> Player<'a> {
+    fn new(
+        job: &'a LaneJob<'a>,
+        lane: &'a mut dyn Lane,
+        sink: &'a mut dyn Sink,
+        stop: &'a AtomicBool,
+    ) -> Player<'a> {
+        let heartbeat_by_default = job
+            .dictionary
+            .and_then(|dictionary| dictionary.entry(0x1017, 0)?.default_bytes(0))
+            .is_some_and(|bytes| bytes.iter().any(|byte| *byte != 0));
+        let tester = Tester {
+            session: Session::new(lane, sink, stop),
+            device: job.device,
+            dictionary: job.dictionary,
+            node: job.bench.node.and_then(NodeId::new),
+            address: job.bench.address,
+            main_role: crate::tester::CAN,
+            sync_producer: None,
+            restores_by_steps: false,
+            strict: job.strict,
+            watch: NodeWatch::new(heartbeat_by_default),
+            saved: Saved::new(),
+            undo: UndoStack::default(),
+            notes: Vec::new(),
+        };
+        Player {
+            job,
+            stop,
+            tester,
+            // A case that names the node of a device that has none is skipped for want of a port, not refused.
+            environment: Environment {
+                node: job.bench.node.or(Some(1)),
+                address: job.bench.address.or(Some(1)),
+            },
+            as_found: None,
+            outcome: LaneOutcome {
+                counts: VerdictCounts::default(),
+                stopped: None,
+            },
+        }
+    }
+
+    /// Waits until a CANopen device is there: it may have been powered with the lane, and then boots first.
+    fn find_device(&mut self) {
+        if self.tester.node.is_none() || !self.tester.claims(Feature::NmtSlave) {
+            return;
+        }
+        let tester = &mut self.tester;
+        let patience = tester.session.now() + tester.device.timing.boot_up;
+        let probe = Duration::from_millis(100);
+        loop {
+            let next = tester.session.now() + probe;
+            if tester.session.collect_until(next).is_err() {
+                return;
+            }
+            match tester.sdo_upload(
+                Multiplexer::new(0x1000, 0),
+                tester.device.timing.sdo_response,
+            ) {
+                Ok(_) => break,
+                // Silent for longer than it may take to boot: the cases will say what is wrong with it.
+                Err(Stop::Mismatch(_) | Stop::Undecided(_)) if tester.session.now() >= patience => {
+                    break;
+                }
+                Err(Stop::Mismatch(_) | Stop::Undecided(_)) => {}
+                Err(_) => return,
+            }
+        }
+        tester.session.begin_case();
+        tester.watch.state = Some(NmtState::PreOperational);
+        self.as_found = Some(NmtState::PreOperational);
+    }
+
+    fn play_suite(&mut self, suite: &Suite) {
+        let mut counts = VerdictCounts::default();
+        let mut begun = false;
+        self.tester.main_role = main_role(suite.head.protocol);
+        for case in suite.cases() {
+            if self.outcome.stopped.is_some() {
+                break;
+            }
+            if self.stop.load(Ordering::Relaxed) {
+                self.outcome.stopped = Some("interrupted".into());
+                break;
+            }
+            if !(self.job.selects)(&case.id()) {
+                continue;
+            }
+            if !begun {
+                begun = true;
+                self.tester
+                    .session
+                    .emit(Event::SuiteStarted(Box::new(SuiteStarted {
+                        suite: suite.head.suite.clone(),
+                        title: suite.head.title.clone(),
+                        path: suite.path.clone(),
+                    })));
+            }
+            counts.add(self.play(suite, &case));
+        }
+        self.outcome.counts.merge(counts);
+        if begun {
+            let at_ns = self.tester.session.now().as_nanos();
+            let suite = suite.head.suite.clone();
+            self.tester
+                .session
+                .emit(Event::SuiteFinished(SuiteFinished {
+                    suite,
+                    at_ns,
+                    counts,
+                }));
+        }
+    }
+
+    fn play(&mut self, suite: &Suite, case: &CaseRef<'_>) -> Verdict {
+        let place = |at: Position| Place {
+            path: suite.path.clone(),
+            line: at.line,
+            column: at.column,
+            end_column: at.end_column,
+            text: suite.line_text(at.line).to_owned(),
+        };
+        let mut case = match case.lower(&self.environment) {
+            Ok(case) => case,
+            Err(diagnostics) => {
+                // The loader has lowered it before; only the bench's node or address can have made the difference.
+                let words: Vec<&str> = diagnostics.iter().map(|d| d.message.as_str()).collect();
+                return self.refuse(&case.id(), &words.join("; "));
+            }
+        };
+        if let Some(node) = self.tester.node {
+            relocate(&mut case, node);
+        }
+        let started_ns = self.tester.session.now().as_nanos();
+        self.tester
+            .session
+            .emit(Event::CaseStarted(Box::new(case_started(
+                &case,
+                started_ns,
+                place(case.at),
+            ))));
+        let skipped = skip_reason(&case, suite.head.protocol, self.job.device, self.job.bench);
+        let outcome = match &skipped {
+            Some(_) => CaseOutcome::skipped(),
+            None => self.play_and_inspect(&case, &place),
+        };
+        let at_ns = self.tester.session.now().as_nanos();
+        self.tester
+            .session
+            .emit(Event::CaseFinished(Box::new(CaseFinished {
+                id: case.id,
+                at_ns,
+                duration_ns: at_ns - started_ns,
+                verdict: outcome.verdict,
+                reason: skipped,
+                failures: outcome.failures,
+                excerpt: outcome.excerpt,
+            })));
+        self.outcome.stopped = outcome.stops_lane;
+        outcome.verdict
+    }
+
+    /// Plays a case, and looks into the device before and after where the lane can.
+    fn play_and_inspect(&mut self, case: &Case, place: &dyn Fn(Position) -> Place) -> CaseOutcome {
+        if !self.job.inspects_device {
+            return self.tester.play_case(case, self.as_found, place);
+        }
+        let before = self.tester.session.lane().device_state();
+        let mut outcome = self.tester.play_case(case, self.as_found, place);
+        let after = self.tester.session.lane().device_state();
+        if before != after && outcome.stops_lane.is_none() {
+            outcome.verdict = outcome.verdict.max(Verdict::Error);
+            let at_ns = self.tester.session.now().as_nanos();
+            outcome
+                .failures
+                .push(left_changed(&before, &after, at_ns, place(case.at)));
+        }
+        outcome
+    }
+
+    fn refuse(&mut self, id: &str, why: &str) -> Verdict {
+        let at_ns = self.tester.session.now().as_nanos();
+        self.tester
+            .session
+            .emit(Event::CaseFinished(Box::new(CaseFinished {
+                id: id.to_owned(),
+                at_ns,
+                duration_ns: 0,
+                verdict: Verdict::Skipped,
+                reason: Some(why.to_owned()),
+                failures: Vec::new(),
+                excerpt: Vec::new(),
+            })));
+        Verdict::Skipped
+    }
+}
+
+/// What a look into the device showed: something is not as it was found.
+fn left_changed(
+    before: &BTreeMap<String, String>,
+    after: &BTreeMap<String, String>,
+    at_ns: u64,
+    place: Place,
+) -> Failure {
+    let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
+    let changed = names
+        .into_iter()
+        .filter(|name| before.get(*name) != after.get(*name));
+    let show = |state: &BTreeMap<String, String>, name: &String| {
+        format!(
+            "{name} = {}",
+            state.get(name).map_or("nothing", String::as_str)
+        )
+    };
+    let (mut expected, mut actual) = (Vec::new(), Vec::new());
+    for name in changed {
+        expected.push(show(before, name));
+        actual.push(show(after, name));
+    }
+    Failure {
+        verdict: Verdict::Error,
+        place,
+        at_ns,
+        what: "the device is not as it was found".into(),
+        expected: expected.join(", "),
+        actual: actual.join(", "),
+        notes: vec!["the case must put back what it changes, or say how under restore".into()],
+    }
+}
+
+fn lane_started(job: &LaneJob<'_>, lane: &dyn Lane) -> LaneStarted {
+    LaneStarted {
+        format: FORMAT,
+        tool: job.tool.to_owned(),
+        device: job.name.to_owned(),
+        title: job.device.title.clone(),
+        fault: job.fault.map(str::to_owned),
+        seed: job.seed,
+        ports: lane
+            .ports()
+            .iter()
+            .map(|port| PortInfo {
+                name: port.name.clone(),
+                link: port.link.clone(),
+                line: show_line(port.line),
+                timestamps: port.timestamps.to_owned(),
+                uncertainty_ns: crate::limits::nanoseconds(port.uncertainty),
+            })
+            .collect(),
+    }
+}
+
+/// `250 kbit/s`, `9600 8N1`
+fn show_line(line: Line) -> String {
+    match line {
+        Line::Off => "off".into(),
+        Line::Can { bit_rate } if bit_rate % 1_000_000 == 0 => {
+            format!("{} Mbit/s", bit_rate / 1_000_000)
+        }
+        Line::Can { bit_rate } => format!("{} kbit/s", bit_rate / 1_000),
+        Line::Serial(settings) => {
+            let parity = match settings.parity {
+                Parity::None => 'N',
+                Parity::Even => 'E',
+                Parity::Odd => 'O',
+            };
+            let stop_bits = match settings.stop_bits {
+                StopBits::One => 1,
+                StopBits::Two => 2,
+            };
+            format!("{} 8{parity}{stop_bits}", settings.baud)
+        }
+    }
+}
+
+fn case_started(case: &Case, at_ns: u64, place: Place) -> CaseStarted {
+    CaseStarted {
+        id: case.id.clone(),
+        written_id: case.written_id.clone(),
+        title: case.title.clone(),
+        at_ns,
+        cites: cites(&case.cites),
+        against: cites(&case.against),
+        because: case.because.clone(),
+        examples: case.examples.clone(),
+        effects: case
+            .effects
+            .iter()
+            .map(|effect| effect_name(*effect).to_owned())
+            .collect(),
+        place,
+    }
+}
+
+fn cites(citations: &[Citation]) -> Vec<Cite> {
+    citations
+        .iter()
+        .map(|citation| Cite {
+            document: citation.document.clone(),
+            section: citation.section.clone(),
+        })
+        .collect()
+}

@@ -1,0 +1,155 @@
+//! The Modbus client: one request, and what must hold of every answer.
+
+use std::time::Duration;
+
+use fieldproof_link::{PortIndex, SerialSettings};
+use fieldproof_record::Limits;
+use fieldproof_wire::modbus::{crc16, crc16_bytes};
+
+use crate::limits::{nanoseconds, show};
+use crate::session::{Message, Received};
+use crate::stop::{Came, Stop};
+use crate::tester::Tester;
+
+/// An answer by the rules of the line: right CRC, no spoilt character, not before its time.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    pub(crate) address: u8,
+    pub(crate) pdu: Vec<u8>,
+}
+
+/// Address and PDU with their CRC.
+pub(crate) fn adu(address: u8, pdu: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(pdu.len() + 3);
+    bytes.push(address);
+    bytes.extend_from_slice(pdu);
+    let crc = crc16_bytes(&bytes);
+    bytes.extend_from_slice(&crc);
+    bytes
+}
+
+/// `20 03 02 0F B4 01 C4`
+pub(crate) fn show_bytes(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len() * 3);
+    for byte in bytes {
+        if !text.is_empty() {
+            text.push(' ');
+        }
+        text.push_str(&format!("{byte:02X}"));
+    }
+    text
+}
+
+impl Tester<'_> {
+    /// The next frame on a serial port since the last send; the silence before it is judged.
+    pub(crate) fn first_serial(
+        &mut self,
+        port: PortIndex,
+        within: Duration,
+    ) -> Result<Option<(Vec<u8>, Received)>, Stop> {
+        let deadline = self.session.last_sent().end + within + self.session.uncertainty(port);
+        let Some(received) = self
+            .session
+            .first(deadline, |received| received.port == port)?
+        else {
+            return Ok(None);
+        };
+        match &received.message {
+            Message::Serial { bytes, .. } => Ok(Some((bytes.clone(), received.clone()))),
+            Message::Can(_) => Ok(None),
+        }
+    }
+
+    /// Sends a request and waits for the answer; `None` if none comes.
+    pub(crate) fn modbus_exchange(
+        &mut self,
+        to: u8,
+        pdu: &[u8],
+        within: Duration,
+    ) -> Result<Option<Answer>, Stop> {
+        let port = self.port(crate::tester::SERIAL)?;
+        self.session.send_bytes(port, &adu(to, pdu))?;
+        let Some((bytes, received)) = self.first_serial(port, within)? else {
+            return Ok(None);
+        };
+        self.judge_reply_time(port, &received, within)?;
+        let Message::Serial { spoilt, .. } = received.message else {
+            return Ok(None);
+        };
+        if spoilt {
+            return Err(Stop::mismatch(
+                "a character of the answer has a wrong parity or stop bit",
+                "whole characters",
+                show_bytes(&bytes),
+                Came::Other,
+            ));
+        }
+        read_answer(&bytes).map(Some)
+    }
+
+    /// A reply begins no earlier than 3.5 characters after the request, and no later than promised.
+    pub(crate) fn judge_reply_time(
+        &mut self,
+        port: PortIndex,
+        received: &Received,
+        within: Duration,
+    ) -> Result<(), Stop> {
+        let silence = self
+            .session
+            .serial_settings(port)
+            .map_or(Duration::ZERO, SerialSettings::silence_3_5);
+        let measured = received.start.since(self.session.last_sent().end);
+        let limits = Limits {
+            min_ns: Some(nanoseconds(silence)),
+            max_ns: Some(nanoseconds(within.max(silence))),
+        };
+        let uncertainty = self.session.uncertainty(port);
+        self.measure("Modbus response time", measured, uncertainty, limits)
+    }
+}
+
+fn read_answer(bytes: &[u8]) -> Result<Answer, Stop> {
+    let (body, crc) = match bytes.split_last_chunk::<2>() {
+        Some((body, crc)) if body.len() >= 2 => (body, crc),
+        _ => {
+            return Err(Stop::mismatch(
+                "the answer is too short for a Modbus frame",
+                "at least 4 bytes",
+                show_bytes(bytes),
+                Came::Other,
+            ));
+        }
+    };
+    let right = crc16_bytes(body);
+    if *crc != right {
+        return Err(Stop::mismatch(
+            "the CRC of the answer is wrong",
+            format!("{} {}", show_bytes(body), show_bytes(&right)),
+            show_bytes(bytes),
+            Came::Other,
+        )
+        .with_note(crc_hint(body, *crc)));
+    }
+    let (address, pdu) = body
+        .split_first()
+        .map_or((0, Vec::new()), |(a, pdu)| (*a, pdu.to_vec()));
+    Ok(Answer { address, pdu })
+}
+
+fn crc_hint(body: &[u8], crc: [u8; 2]) -> String {
+    if u16::from_be_bytes(crc) == crc16(body) {
+        "the two bytes of the CRC are swapped: the low byte goes first".into()
+    } else {
+        format!("a CRC-16 over {} bytes was expected", body.len())
+    }
+}
+
+/// What came instead of an answer.
+pub(crate) fn no_answer(within: Duration) -> Stop {
+    Stop::mismatch(
+        "the Modbus slave does not answer",
+        format!("an answer within {}", show(within)),
+        "nothing",
+        Came::Silence,
+    )
+}

@@ -1,0 +1,382 @@
+//! Puts the device back as it was found: in reverse order, by procedure, whatever ended the case.
+
+use fieldproof_link::{Line, PortIndex, Stimulus};
+use fieldproof_suite::device::Feature;
+use fieldproof_suite::model::{Case, Effect, NmtState};
+use fieldproof_wire::canopen::Multiplexer;
+
+use crate::modbus::{Answer, show_bytes};
+use crate::pdo_procedure::pdo_parameters;
+use crate::sdo::{Outcome, show_abort};
+use crate::steps::multiplexer;
+use crate::stop::{Came, Stop};
+use crate::tester::Tester;
+
+/// Something to put back.
+#[derive(Debug, Clone)]
+pub(crate) enum Undo {
+    /// An object held these bytes.
+    Object(Multiplexer, Vec<u8>),
+    /// Registers from this one on held these values.
+    Registers(u16, Vec<u16>),
+    /// The power was on.
+    PowerOn,
+    /// A condition did not hold.
+    Condition(String),
+    /// A switch stood here.
+    Setting(String, i64),
+    /// The tester's side of a port was set so.
+    Line(PortIndex, Line),
+}
+
+/// What is to be put back, last first.
+#[derive(Debug, Default)]
+pub(crate) struct UndoStack {
+    entries: Vec<Undo>,
+}
+
+impl UndoStack {
+    pub(crate) fn push(&mut self, undo: Undo) {
+        self.entries.push(undo);
+    }
+
+    fn pop(&mut self) -> Option<Undo> {
+        self.entries.pop()
+    }
+
+    /// The last thing was not changed after all.
+    pub(crate) fn forget_last(&mut self) {
+        self.entries.pop();
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Puts `undo` back after everything else, unless its object is to be put back anyway.
+    pub(crate) fn push_last(&mut self, object: Multiplexer, bytes: Vec<u8>) {
+        let known = |undo: &Undo| matches!(undo, Undo::Object(other, _) if *other == object);
+        if !self.entries.iter().any(known) {
+            self.entries.insert(0, Undo::Object(object, bytes));
+        }
+    }
+}
+
+/// Objects that are commands, not settings: what they read is not what was written.
+const COMMANDS: [u16; 3] = [0x1003, 0x1010, 0x1011];
+const CONTROLWORD: Multiplexer = Multiplexer::new(0x6040, 0);
+
+impl Tester<'_> {
+    /// The value an object holds before it is written, if it can be read.
+    pub(crate) fn value_before(&mut self, object: Multiplexer) -> Result<Option<Vec<u8>>, Stop> {
+        let entry = self
+            .dictionary
+            .and_then(|dictionary| dictionary.entry(object.index, object.sub));
+        let readable = entry.is_none_or(|entry| entry.access.readable());
+        if COMMANDS.contains(&object.index) || !readable {
+            return Ok(None);
+        }
+        match self.sdo_upload(object, self.device.timing.sdo_response)? {
+            Outcome::Done(bytes) => Ok(Some(bytes)),
+            Outcome::Refused(_) => Ok(None),
+        }
+    }
+
+    /// An object is about to be written: its value before is put back after the case, even if the answer to the write
+    /// never comes.
+    pub(crate) fn remember_object(&mut self, object: Multiplexer, before: &Option<Vec<u8>>) {
+        if let Some(bytes) = before {
+            self.undo.push(Undo::Object(object, bytes.clone()));
+        }
+    }
+
+    /// An object was written: somebody must know how to put it back.
+    pub(crate) fn check_remembered(
+        &self,
+        object: Multiplexer,
+        before: &Option<Vec<u8>>,
+    ) -> Result<(), Stop> {
+        if before.is_some() || COMMANDS.contains(&object.index) || self.restores_by_steps {
+            return Ok(());
+        }
+        Err(Stop::Bench(format!(
+            "{object} was written and cannot be put back, for it cannot be read: the case must say how, under restore"
+        )))
+    }
+
+    /// What registers hold before they are written, if they can be read.
+    pub(crate) fn registers_before(
+        &mut self,
+        first: u16,
+        count: u16,
+    ) -> Result<Option<Vec<u16>>, Stop> {
+        let mut pdu = vec![0x03];
+        pdu.extend(first.to_be_bytes());
+        pdu.extend(count.to_be_bytes());
+        let Some(address) = self.address else {
+            return Ok(None);
+        };
+        let answer = match self.modbus_exchange(address, &pdu, self.device.timing.modbus_response) {
+            Ok(Some(answer)) => answer,
+            Ok(None) | Err(Stop::Mismatch(_) | Stop::Undecided(_)) => return Ok(None),
+            Err(stop) => return Err(stop),
+        };
+        Ok(registers_of(&answer, count))
+    }
+
+    /// Registers are about to be written: their values before are put back after the case.
+    pub(crate) fn remember_registers(&mut self, first: u16, before: &Option<Vec<u16>>) {
+        if let Some(values) = before {
+            self.undo.push(Undo::Registers(first, values.clone()));
+        }
+    }
+
+    /// Registers were written: somebody must know how to put them back.
+    pub(crate) fn check_registers_remembered(
+        &self,
+        first: u16,
+        before: &Option<Vec<u16>>,
+    ) -> Result<(), Stop> {
+        if before.is_some() || self.restores_by_steps {
+            return Ok(());
+        }
+        Err(Stop::Bench(format!(
+            "register {first:04X}h was written and cannot be put back, for it cannot be read: the case must say how, under restore"
+        )))
+    }
+
+    /// Reads what a case says it will change by raw frames.
+    pub(crate) fn snapshot(&mut self, case: &Case) -> Result<(), Stop> {
+        for object in procedure_order(
+            &case
+                .restore
+                .objects
+                .iter()
+                .map(|o| multiplexer(*o))
+                .collect::<Vec<_>>(),
+        ) {
+            match self.sdo_upload(object, self.device.timing.sdo_response)? {
+                Outcome::Done(bytes) => self.undo.push(Undo::Object(object, bytes)),
+                Outcome::Refused(code) => {
+                    return Err(Stop::undecided(
+                        format!(
+                            "{object} cannot be read before the case, so it could not be put back"
+                        ),
+                        "a value",
+                        show_abort(code),
+                    ));
+                }
+            }
+        }
+        for register in &case.restore.registers {
+            match self.registers_before(*register, 1)? {
+                Some(values) => self.undo.push(Undo::Registers(*register, values)),
+                None => {
+                    return Err(Stop::undecided(
+                        format!(
+                            "register {register:04X}h cannot be read before the case, so it could not be put back"
+                        ),
+                        "a value",
+                        "no value",
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts everything back and reads it back. Nothing interrupts it.
+    pub(crate) fn put_back(&mut self, case: &Case, as_found: Option<NmtState>) -> Result<(), Stop> {
+        self.session.uninterruptible = true;
+        let result = self.put_back_all(case, as_found);
+        self.session.uninterruptible = false;
+        self.undo.clear();
+        result
+    }
+
+    fn put_back_all(&mut self, case: &Case, as_found: Option<NmtState>) -> Result<(), Stop> {
+        self.stop_sync()?;
+        if case.effects.contains(&Effect::Moves) {
+            self.stop_drive()?;
+        }
+        for step in &case.restore.steps {
+            self.step(&step.value)?;
+        }
+        while let Some(undo) = self.undo.pop() {
+            self.undo_one(undo)?;
+        }
+        self.settle_node(as_found)
+    }
+
+    /// A drive is stopped before anything else is put back.
+    fn stop_drive(&mut self) -> Result<(), Stop> {
+        let has_controlword = self
+            .dictionary
+            .is_some_and(|dictionary| dictionary.entry(CONTROLWORD.index, 0).is_some());
+        if has_controlword {
+            self.make_reachable()?;
+            self.sdo_download(CONTROLWORD, &[0, 0], self.device.timing.sdo_response)?;
+        }
+        Ok(())
+    }
+
+    fn undo_one(&mut self, undo: Undo) -> Result<(), Stop> {
+        match undo {
+            Undo::Object(object, bytes) => self.write_back(object, &bytes),
+            Undo::Registers(first, values) => self.write_registers_back(first, &values),
+            Undo::PowerOn => {
+                self.give(&Stimulus::Power { on: true })?;
+                self.watch.boot_up_due = true;
+                self.await_boot_up()
+            }
+            Undo::Condition(name) => self.give(&Stimulus::Condition {
+                name,
+                active: false,
+            }),
+            Undo::Setting(name, value) => self.set(&name, value),
+            Undo::Line(port, line) => Ok(self.session.lane().set_line(port, line)?),
+        }
+    }
+
+    fn write_back(&mut self, object: Multiplexer, bytes: &[u8]) -> Result<(), Stop> {
+        self.make_reachable()?;
+        let within = self.device.timing.sdo_response;
+        if let Outcome::Done(present) = self.sdo_upload(object, within)?
+            && present == bytes
+        {
+            return Ok(());
+        }
+        self.prepare_pdo(object)?;
+        if let Outcome::Refused(code) = self.sdo_download(object, bytes, within)? {
+            return Err(not_put_back(
+                &object.to_string(),
+                &show_bytes(bytes),
+                &show_abort(code),
+            ));
+        }
+        match self.sdo_upload(object, within)? {
+            Outcome::Done(present) if present == bytes => Ok(()),
+            Outcome::Done(present) => Err(not_put_back(
+                &object.to_string(),
+                &show_bytes(bytes),
+                &show_bytes(&present),
+            )),
+            Outcome::Refused(code) => Err(not_put_back(
+                &object.to_string(),
+                &show_bytes(bytes),
+                &show_abort(code),
+            )),
+        }
+    }
+
+    fn write_registers_back(&mut self, first: u16, values: &[u16]) -> Result<(), Stop> {
+        let count = values.len() as u16;
+        let name = format!("register {first:04X}h");
+        if self.registers_before(first, count)?.as_deref() == Some(values) {
+            return Ok(());
+        }
+        let Some(address) = self.address else {
+            return Ok(());
+        };
+        for (register, value) in (first..).zip(values) {
+            let mut pdu = vec![0x06];
+            pdu.extend(register.to_be_bytes());
+            pdu.extend(value.to_be_bytes());
+            self.modbus_exchange(address, &pdu, self.device.timing.modbus_response)?;
+        }
+        match self.registers_before(first, count)? {
+            Some(present) if present == values => Ok(()),
+            present => Err(not_put_back(
+                &name,
+                &format!("{values:04X?}"),
+                &format!("{present:04X?}"),
+            )),
+        }
+    }
+
+    /// Brings the node into a state in which SDO works.
+    pub(crate) fn make_reachable(&mut self) -> Result<(), Stop> {
+        if self.watch.boot_up_due {
+            self.await_boot_up()?;
+        }
+        if self.watch.state == Some(NmtState::Stopped) {
+            self.command_into(NmtState::PreOperational)?;
+            let settled = self.session.now() + self.device.timing.nmt_transition;
+            self.session.collect_until(settled)?;
+        }
+        Ok(())
+    }
+
+    /// Brings the node back into the state it was found in.
+    fn settle_node(&mut self, as_found: Option<NmtState>) -> Result<(), Stop> {
+        if self.node.is_none() || !self.claims(Feature::NmtSlave) {
+            return Ok(());
+        }
+        if self.watch.boot_up_due {
+            self.await_boot_up()?;
+        }
+        match as_found {
+            Some(state) if self.watch.state != Some(state) => {
+                self.command_into(state)?;
+                let settled = self.session.now() + self.device.timing.nmt_transition;
+                self.session.collect_until(settled)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Waits for the boot-up of a node that was reset or powered.
+    pub(crate) fn await_boot_up(&mut self) -> Result<(), Stop> {
+        let id = self.identifier(fieldproof_wire::canopen::Service::ErrorControl)?;
+        let within = self.device.timing.boot_up;
+        let booted = self.first_frame(fieldproof_can::Id::Standard(id), within)?;
+        self.watch.boot_up_due = false;
+        match booted {
+            Some(_) => {
+                self.watch.booted();
+                Ok(())
+            }
+            None => Err(Stop::mismatch(
+                "the node does not boot again",
+                format!("a boot-up within {}", crate::limits::show(within)),
+                "nothing",
+                Came::Silence,
+            )),
+        }
+    }
+}
+
+fn registers_of(answer: &Answer, count: u16) -> Option<Vec<u16>> {
+    let (head, data) = answer.pdu.split_first_chunk::<2>()?;
+    let expected = usize::from(count) * 2;
+    (*head == [0x03, expected as u8] && data.len() == expected).then(|| {
+        data.as_chunks::<2>()
+            .0
+            .iter()
+            .map(|pair| u16::from_be_bytes(*pair))
+            .collect()
+    })
+}
+
+fn not_put_back(what: &str, expected: &str, actual: &str) -> Stop {
+    Stop::mismatch(
+        format!("{what} could not be put back"),
+        expected,
+        actual,
+        Came::Other,
+    )
+}
+
+/// The order in which objects are remembered, so that in reverse the entries of a mapping come before their count, and
+/// the COB-ID that enables the PDO comes last.
+fn procedure_order(objects: &[Multiplexer]) -> Vec<Multiplexer> {
+    let mut ordered = objects.to_vec();
+    ordered.sort_by_key(|object| match (pdo_parameters(object.index), object.sub) {
+        (Some(communication), 1) if communication == object.index => 0,
+        (Some(communication), _) if communication == object.index => 1,
+        (Some(_), 0) => 2,
+        (Some(_), _) => 3,
+        (None, _) => 4,
+    });
+    ordered
+}

@@ -1,0 +1,240 @@
+//! The SDO client: one upload or download, every frame checked against the object that was asked for.
+
+use std::time::Duration;
+
+use fieldproof_can::{Frame, Id};
+use fieldproof_wire::canopen::sdo::{Data, RawSdo, Request, Response, Segment, Transfer};
+use fieldproof_wire::canopen::{AbortCode, Multiplexer, Service};
+
+use crate::session::Received;
+use crate::stop::{Came, Stop};
+use crate::tester::Tester;
+
+/// How a transfer ended that both sides carried out by the rules.
+#[derive(Debug)]
+pub(crate) enum Outcome<T> {
+    Done(T),
+    /// The server refused, naming the right object.
+    Refused(AbortCode),
+}
+
+/// A value longer than this is not what a field device has; a server that never ends would otherwise fill the memory.
+const LONGEST_VALUE: usize = 1 << 20;
+
+impl Tester<'_> {
+    /// Reads an object: expedited or segmented, as the server chooses.
+    pub(crate) fn sdo_upload(
+        &mut self,
+        object: Multiplexer,
+        within: Duration,
+    ) -> Result<Outcome<Vec<u8>>, Stop> {
+        match self.sdo_exchange(Request::InitiateUpload(object), within)? {
+            Response::Abort {
+                object: named,
+                code,
+            } => refused(object, named, code),
+            Response::InitiateUpload {
+                object: named,
+                transfer,
+            } => {
+                check_object("the answer to the read", object, named)?;
+                match transfer {
+                    Transfer::Expedited(data) => Ok(Outcome::Done(data.bytes().to_vec())),
+                    Transfer::ExpeditedUnsized(data) => Ok(Outcome::Done(data.to_vec())),
+                    Transfer::Segmented { size } => self.upload_segments(object, size, within),
+                }
+            }
+            other => Err(wrong_service("an answer to initiate upload", &other)),
+        }
+    }
+
+    fn upload_segments(
+        &mut self,
+        object: Multiplexer,
+        size: Option<u32>,
+        within: Duration,
+    ) -> Result<Outcome<Vec<u8>>, Stop> {
+        let mut value = Vec::new();
+        let mut toggle = false;
+        loop {
+            match self.sdo_exchange(Request::UploadSegment { toggle }, within)? {
+                Response::Abort {
+                    object: named,
+                    code,
+                } => return refused(object, named, code),
+                Response::UploadSegment(segment) => {
+                    check_toggle(segment.toggle, toggle)?;
+                    value.extend_from_slice(segment.data.bytes());
+                    if segment.last {
+                        break;
+                    }
+                    if value.len() > LONGEST_VALUE {
+                        return Err(Stop::mismatch(
+                            "the segmented upload does not end",
+                            format!("at most {LONGEST_VALUE} bytes"),
+                            "more",
+                            Came::Other,
+                        ));
+                    }
+                    toggle = !toggle;
+                }
+                other => return Err(wrong_service("an upload segment", &other)),
+            }
+        }
+        match size {
+            Some(size) if size as usize != value.len() => Err(Stop::mismatch(
+                "the segments do not carry as many bytes as the server announced",
+                format!("{size} bytes"),
+                format!("{} bytes", value.len()),
+                Came::Other,
+            )),
+            _ => Ok(Outcome::Done(value)),
+        }
+    }
+
+    /// Writes an object: expedited up to 4 bytes, else segmented.
+    pub(crate) fn sdo_download(
+        &mut self,
+        object: Multiplexer,
+        value: &[u8],
+        within: Duration,
+    ) -> Result<Outcome<()>, Stop> {
+        let transfer = match Data::new(value) {
+            Some(data) => Transfer::Expedited(data),
+            None => Transfer::Segmented {
+                size: Some(value.len() as u32),
+            },
+        };
+        match self.sdo_exchange(Request::InitiateDownload { object, transfer }, within)? {
+            Response::Abort {
+                object: named,
+                code,
+            } => refused(object, named, code),
+            Response::InitiateDownload(named) => {
+                check_object("the answer to the write", object, named)?;
+                match transfer {
+                    Transfer::Segmented { .. } => self.download_segments(object, value, within),
+                    Transfer::Expedited(_) | Transfer::ExpeditedUnsized(_) => Ok(Outcome::Done(())),
+                }
+            }
+            other => Err(wrong_service("an answer to initiate download", &other)),
+        }
+    }
+
+    fn download_segments(
+        &mut self,
+        object: Multiplexer,
+        value: &[u8],
+        within: Duration,
+    ) -> Result<Outcome<()>, Stop> {
+        let mut toggle = false;
+        let count = value.chunks(7).count().max(1);
+        for number in 0..count {
+            let part = value.chunks(7).nth(number).unwrap_or_default();
+            let Some(data) = Data::new(part) else {
+                return Err(Stop::Bench("a segment holds 7 bytes".into()));
+            };
+            let segment = Segment {
+                toggle,
+                last: number + 1 == count,
+                data,
+            };
+            match self.sdo_exchange(Request::DownloadSegment(segment), within)? {
+                Response::Abort {
+                    object: named,
+                    code,
+                } => return refused(object, named, code),
+                Response::DownloadSegment { toggle: answered } => check_toggle(answered, toggle)?,
+                other => return Err(wrong_service("an answer to the download segment", &other)),
+            }
+            toggle = !toggle;
+        }
+        Ok(Outcome::Done(()))
+    }
+
+    /// One request and its answer.
+    fn sdo_exchange(&mut self, request: Request, within: Duration) -> Result<Response, Stop> {
+        let request_id = self.identifier(Service::SdoRequest)?;
+        let response_id = self.identifier(Service::SdoResponse)?;
+        self.send_frame(Frame::of_eight(request_id, request.encode()))?;
+        let Some((frame, received)) = self.first_frame(Id::Standard(response_id), within)? else {
+            return Err(Stop::mismatch(
+                "the SDO server does not answer",
+                format!("an answer within {}", crate::limits::show(within)),
+                "nothing",
+                Came::Silence,
+            ));
+        };
+        self.judge_sdo_time(&received, within)?;
+        read_response(&frame)
+    }
+
+    fn judge_sdo_time(&mut self, received: &Received, within: Duration) -> Result<(), Stop> {
+        self.measure_response("SDO response time", received, within)
+    }
+}
+
+fn read_response(frame: &Frame) -> Result<Response, Stop> {
+    let malformed = |expected: String, found: String| {
+        Stop::mismatch(
+            "the SDO answer is malformed",
+            expected,
+            found,
+            Came::Frame(*frame),
+        )
+    };
+    if frame.is_remote() {
+        return Err(malformed("a data frame".into(), "a remote frame".into()));
+    }
+    RawSdo::from_slice(frame.bytes())
+        .and_then(|raw| Response::parse(&raw.0))
+        .map_err(|violation| {
+            malformed(violation.expected, format!("{} ({frame})", violation.found))
+        })
+}
+
+fn refused<T>(asked: Multiplexer, named: Multiplexer, code: AbortCode) -> Result<Outcome<T>, Stop> {
+    check_object("the abort", asked, named)?;
+    Ok(Outcome::Refused(code))
+}
+
+fn check_object(what: &str, asked: Multiplexer, named: Multiplexer) -> Result<(), Stop> {
+    if asked == named {
+        return Ok(());
+    }
+    Err(Stop::mismatch(
+        format!("{what} names another object"),
+        asked.to_string(),
+        named.to_string(),
+        Came::Other,
+    ))
+}
+
+fn check_toggle(answered: bool, asked: bool) -> Result<(), Stop> {
+    if answered == asked {
+        return Ok(());
+    }
+    Err(Stop::mismatch(
+        "the toggle bit of the segment is not that of the request",
+        format!("toggle {}", u8::from(asked)),
+        format!("toggle {}", u8::from(answered)),
+        Came::Other,
+    ))
+}
+
+fn wrong_service(expected: &str, came: &Response) -> Stop {
+    Stop::mismatch(
+        "the SDO server answers with another service",
+        expected,
+        format!("{came:?}"),
+        Came::Other,
+    )
+}
+
+/// `06090011h (sub-index does not exist)`
+pub(crate) fn show_abort(code: AbortCode) -> String {
+    match code.meaning() {
+        Some(meaning) => format!("{:08X}h ({meaning})", code.0),
+        None => format!("{:08X}h (not in CiA 301)", code.0),
+    }
+}

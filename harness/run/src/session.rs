@@ -1,0 +1,383 @@
+//! The tester's view of a lane while a case is played: what was sent, what came and was not yet expected.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use fieldproof_can::Frame;
+use fieldproof_link::{
+    Character, Instant, Lane, Line, Origin, PortIndex, Reception, Sent, SerialSettings,
+    Transmission,
+};
+use fieldproof_record::{Direction, Event, FrameEvent, SerialEvent, Sink};
+
+use crate::serial::Assembler;
+use crate::stop::Stop;
+
+/// How many of the last frames are kept for the excerpt of a failure.
+const TRACE_LENGTH: usize = 48;
+
+/// Something that came, whole.
+#[derive(Debug, Clone)]
+pub(crate) struct Received {
+    /// The end of its last bit.
+    pub(crate) at: Instant,
+    /// The start of its first bit; on CAN the same as `at`, for only the end is stamped.
+    pub(crate) start: Instant,
+    pub(crate) port: PortIndex,
+    pub(crate) origin: Origin,
+    pub(crate) message: Message,
+}
+
+/// A CAN frame, or bytes between silences.
+#[derive(Debug, Clone)]
+pub(crate) enum Message {
+    Can(Frame),
+    Serial { bytes: Vec<u8>, spoilt: bool },
+}
+
+/// A frame of the case's traffic, as it goes into the record.
+#[derive(Debug, Clone)]
+pub(crate) enum Traffic {
+    Can(FrameEvent),
+    Serial(Box<SerialEvent>),
+}
+
+/// The tester's view of a lane.
+pub(crate) struct Session<'a> {
+    lane: &'a mut dyn Lane,
+    sink: &'a mut dyn Sink,
+    stop: &'a AtomicBool,
+    /// Set while a device is put back: then nothing interrupts.
+    pub(crate) uninterruptible: bool,
+    /// What came since the last send and was not expected yet.
+    inbox: VecDeque<Received>,
+    assemblers: Vec<Option<Assembler>>,
+    trace: VecDeque<Traffic>,
+    /// The last transmission, or the last stimulus; what an expectation looks back to.
+    last_sent: Sent,
+    /// The last activity on each port, for the silence before a serial frame.
+    last_activity: Vec<Instant>,
+}
+
+impl<'a> Session<'a> {
+    pub(crate) fn new(
+        lane: &'a mut dyn Lane,
+        sink: &'a mut dyn Sink,
+        stop: &'a AtomicBool,
+    ) -> Session<'a> {
+        let now = lane.now();
+        let assemblers: Vec<Option<Assembler>> = lane
+            .ports()
+            .iter()
+            .map(|port| match port.line {
+                Line::Serial(settings) => Some(Assembler::new(settings)),
+                Line::Can { .. } | Line::Off => None,
+            })
+            .collect();
+        let last_activity = vec![now; assemblers.len()];
+        Session {
+            lane,
+            sink,
+            stop,
+            uninterruptible: false,
+            inbox: VecDeque::new(),
+            assemblers,
+            trace: VecDeque::with_capacity(TRACE_LENGTH),
+            last_sent: Sent {
+                start: now,
+                end: now,
+            },
+            last_activity,
+        }
+    }
+
+    pub(crate) fn now(&self) -> Instant {
+        self.lane.now()
+    }
+
+    pub(crate) fn lane(&mut self) -> &mut dyn Lane {
+        self.lane
+    }
+
+    pub(crate) fn port(&self, role: &str) -> Option<PortIndex> {
+        self.lane
+            .ports()
+            .iter()
+            .position(|port| port.name == role)
+            .map(PortIndex)
+    }
+
+    pub(crate) fn port_name(&self, port: PortIndex) -> &str {
+        self.lane
+            .ports()
+            .get(port.0)
+            .map_or("?", |port| port.name.as_str())
+    }
+
+    pub(crate) fn uncertainty(&self, port: PortIndex) -> Duration {
+        self.lane
+            .ports()
+            .get(port.0)
+            .map_or(Duration::ZERO, |port| port.uncertainty)
+    }
+
+    /// How the tester is set on a port.
+    pub(crate) fn line(&self, port: PortIndex) -> Line {
+        self.lane
+            .ports()
+            .get(port.0)
+            .map_or(Line::Off, |port| port.line)
+    }
+
+    pub(crate) fn serial_settings(&self, port: PortIndex) -> Option<SerialSettings> {
+        self.assemblers
+            .get(port.0)?
+            .as_ref()
+            .map(Assembler::settings)
+    }
+
+    pub(crate) fn emit(&mut self, event: Event) {
+        self.sink.emit(event);
+    }
+
+    pub(crate) fn last_sent(&self) -> Sent {
+        self.last_sent
+    }
+
+    pub(crate) fn trace(&self) -> impl Iterator<Item = &Traffic> {
+        self.trace.iter()
+    }
+
+    /// Forgets the case before: its frames are not this case's.
+    pub(crate) fn begin_case(&mut self) {
+        self.inbox.clear();
+        self.trace.clear();
+        self.mark_sent();
+    }
+
+    /// From now on expectations look back to this instant and no further.
+    pub(crate) fn mark_sent(&mut self) {
+        let now = self.lane.now();
+        self.last_sent = Sent {
+            start: now,
+            end: now,
+        };
+    }
+
+    /// Sends a frame at once.
+    pub(crate) fn send_frame(&mut self, port: PortIndex, frame: Frame) -> Result<Sent, Stop> {
+        self.send_frame_at(port, self.lane.now(), frame)
+    }
+
+    /// Sends a frame at an instant.
+    pub(crate) fn send_frame_at(
+        &mut self,
+        port: PortIndex,
+        at: Instant,
+        frame: Frame,
+    ) -> Result<Sent, Stop> {
+        let sent = self.lane.send(port, at, Transmission::Frame(frame))?;
+        self.last_sent = sent;
+        self.record_frame(sent.end, port, Direction::Sent, frame);
+        Ok(sent)
+    }
+
+    /// Sends bytes without a gap, after the silence that ends whatever was on the line before.
+    pub(crate) fn send_bytes(&mut self, port: PortIndex, bytes: &[u8]) -> Result<Sent, Stop> {
+        let silence = self
+            .serial_settings(port)
+            .map_or(Duration::ZERO, SerialSettings::silence_3_5);
+        let quiet_since = self
+            .last_activity
+            .get(port.0)
+            .copied()
+            .unwrap_or(Instant::START);
+        let at = self.lane.now().max(quiet_since + silence);
+        let characters = bytes.iter().copied().map(Character::new).collect();
+        let sent = self
+            .lane
+            .send(port, at, Transmission::Characters(characters))?;
+        self.last_sent = sent;
+        self.note_activity(port, sent.end);
+        self.record_serial(SerialEvent {
+            at_ns: sent.end.as_nanos(),
+            start_ns: sent.start.as_nanos(),
+            port: port.0 as u8,
+            direction: Direction::Sent,
+            bytes: bytes.to_vec(),
+            spoilt: false,
+        });
+        Ok(sent)
+    }
+
+    /// What came since the last send and nothing expected, oldest first; the inbox is empty afterwards.
+    pub(crate) fn take_unexpected(&mut self) -> VecDeque<Received> {
+        std::mem::take(&mut self.inbox)
+    }
+
+    /// The first thing since the last send that `wanted` accepts, now or until `deadline`. What it does not accept
+    /// stays for later expectations.
+    pub(crate) fn first(
+        &mut self,
+        deadline: Instant,
+        mut wanted: impl FnMut(&Received) -> bool,
+    ) -> Result<Option<Received>, Stop> {
+        let since = self.last_sent.end;
+        let mut fits = |received: &Received| received.at > since && wanted(received);
+        if let Some(index) = self.inbox.iter().position(&mut fits) {
+            return Ok(self.inbox.remove(index));
+        }
+        while let Some(received) = self.next(deadline)? {
+            if fits(&received) {
+                return Ok(Some(received));
+            }
+            self.inbox.push_back(received);
+        }
+        Ok(None)
+    }
+
+    /// Whether something like this has come since the last send and was not expected yet; it stays where it is.
+    pub(crate) fn has_come(&self, wanted: impl Fn(&Received) -> bool) -> bool {
+        self.inbox
+            .iter()
+            .any(|received| received.at > self.last_sent.end && wanted(received))
+    }
+
+    /// Lets time pass until `instant`; what comes is kept.
+    pub(crate) fn collect_until(&mut self, instant: Instant) -> Result<(), Stop> {
+        while let Some(received) = self.next(instant)? {
+            self.inbox.push_back(received);
+        }
+        Ok(())
+    }
+
+    /// The next whole thing that comes on any port, not later than `deadline`. A serial frame that has begun by then
+    /// is waited for.
+    fn next(&mut self, deadline: Instant) -> Result<Option<Received>, Stop> {
+        loop {
+            if !self.uninterruptible && self.stop.load(Ordering::Relaxed) {
+                return Err(Stop::Interrupted);
+            }
+            let frame_ends = self.earliest_frame_end();
+            let until = frame_ends.unwrap_or(deadline);
+            match self.lane.receive(until)? {
+                None => match self.finish_frames(until) {
+                    Some(received) => return Ok(Some(received)),
+                    None => return Ok(None),
+                },
+                Some(arrival) => match arrival.what {
+                    Reception::Frame(frame) => {
+                        let direction = match arrival.origin {
+                            Origin::Bus => Direction::Received,
+                            Origin::Companion(_) => Direction::Companion,
+                        };
+                        self.record_frame(arrival.at, arrival.port, direction, frame);
+                        return Ok(Some(Received {
+                            at: arrival.at,
+                            start: arrival.at,
+                            port: arrival.port,
+                            origin: arrival.origin,
+                            message: Message::Can(frame),
+                        }));
+                    }
+                    Reception::Character(character) => {
+                        self.note_activity(arrival.port, arrival.at);
+                        let finished = self
+                            .assemblers
+                            .get_mut(arrival.port.0)
+                            .and_then(Option::as_mut)
+                            .and_then(|assembler| {
+                                assembler.take(arrival.at, arrival.origin, character)
+                            });
+                        if let Some(frame) = finished {
+                            return Ok(Some(self.serial_received(arrival.port, frame)));
+                        }
+                    }
+                },
+            }
+        }
+    }
+
+    fn earliest_frame_end(&self) -> Option<Instant> {
+        self.assemblers
+            .iter()
+            .flatten()
+            .filter_map(Assembler::ends_at)
+            .min()
+    }
+
+    fn finish_frames(&mut self, now: Instant) -> Option<Received> {
+        for index in 0..self.assemblers.len() {
+            let finished = self
+                .assemblers
+                .get_mut(index)
+                .and_then(Option::as_mut)
+                .and_then(|a| a.finish(now));
+            if let Some(frame) = finished {
+                return Some(self.serial_received(PortIndex(index), frame));
+            }
+        }
+        None
+    }
+
+    fn serial_received(&mut self, port: PortIndex, frame: crate::serial::SerialFrame) -> Received {
+        let direction = match frame.origin {
+            Origin::Bus => Direction::Received,
+            Origin::Companion(_) => Direction::Companion,
+        };
+        self.record_serial(SerialEvent {
+            at_ns: frame.end.as_nanos(),
+            start_ns: frame.start.as_nanos(),
+            port: port.0 as u8,
+            direction,
+            bytes: frame.bytes.clone(),
+            spoilt: frame.spoilt,
+        });
+        Received {
+            at: frame.end,
+            start: frame.start,
+            port,
+            origin: frame.origin,
+            message: Message::Serial {
+                bytes: frame.bytes,
+                spoilt: frame.spoilt,
+            },
+        }
+    }
+
+    fn note_activity(&mut self, port: PortIndex, at: Instant) {
+        if let Some(last) = self.last_activity.get_mut(port.0) {
+            *last = at;
+        }
+    }
+
+    fn record_frame(&mut self, at: Instant, port: PortIndex, direction: Direction, frame: Frame) {
+        let mut data = [0; 8];
+        data[..frame.bytes().len()].copy_from_slice(frame.bytes());
+        let event = FrameEvent {
+            at_ns: at.as_nanos(),
+            port: port.0 as u8,
+            direction,
+            id: frame.id().raw(),
+            extended: frame.id().is_extended(),
+            remote: frame.is_remote(),
+            len: frame.len() as u8,
+            data,
+        };
+        self.remember(Traffic::Can(event));
+        self.sink.emit(Event::Frame(event));
+    }
+
+    fn record_serial(&mut self, event: SerialEvent) {
+        self.remember(Traffic::Serial(Box::new(event.clone())));
+        self.sink.emit(Event::Serial(Box::new(event)));
+    }
+
+    fn remember(&mut self, traffic: Traffic) {
+        if self.trace.len() == TRACE_LENGTH {
+            self.trace.pop_front();
+        }
+        self.trace.push_back(traffic);
+    }
+}

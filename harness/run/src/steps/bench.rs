@@ -1,0 +1,120 @@
+//! `stimulate`, `set-bit-rate`: what the bench does beside the bus.
+
+use std::time::Duration;
+
+use fieldproof_link::{Line, Stimulus, StimulusError};
+use fieldproof_record::{Event, StimulusEvent};
+use fieldproof_suite::model::{PowerAction, Stimulate};
+
+use crate::restore::Undo;
+use crate::stop::Stop;
+use crate::tester::Tester;
+
+/// How long a power cycle keeps the power off.
+const POWER_OFF_TIME: Duration = Duration::from_secs(1);
+
+impl Tester<'_> {
+    pub(super) fn stimulate(&mut self, step: &Stimulate) -> Result<(), Stop> {
+        match step {
+            Stimulate::Power(PowerAction::Off) => self.power(false),
+            Stimulate::Power(PowerAction::On) => self.power(true),
+            Stimulate::Power(PowerAction::Cycle) => {
+                self.power(false)?;
+                let off_until = self.session.now() + POWER_OFF_TIME;
+                self.session.collect_until(off_until)?;
+                self.power(true)
+            }
+            Stimulate::ProcessValue { name, to } => self.give(&Stimulus::ProcessValue {
+                name: name.clone(),
+                value: *to,
+            }),
+            Stimulate::Condition { name, active } => {
+                if *active {
+                    self.undo.push(Undo::Condition(name.clone()));
+                }
+                self.give(&Stimulus::Condition {
+                    name: name.clone(),
+                    active: *active,
+                })
+            }
+            Stimulate::Setting { name, to } => {
+                let before = match name.as_str() {
+                    "node" => self.node.map(|node| i64::from(node.raw())),
+                    "address" => self.address.map(i64::from),
+                    _ => None,
+                };
+                if let Some(before) = before {
+                    self.undo.push(Undo::Setting(name.clone(), before));
+                }
+                self.set(name, *to)
+            }
+        }
+    }
+
+    pub(crate) fn power(&mut self, on: bool) -> Result<(), Stop> {
+        if on {
+            self.watch.boot_up_due = true;
+        } else {
+            self.undo.push(Undo::PowerOn);
+        }
+        self.give(&Stimulus::Power { on })
+    }
+
+    /// Sets a switch of the device, and follows what it means for the tester.
+    pub(crate) fn set(&mut self, name: &str, value: i64) -> Result<(), Stop> {
+        self.give(&Stimulus::Setting {
+            name: name.to_owned(),
+            value,
+        })?;
+        match name {
+            "address" => self.address = u8::try_from(value).ok(),
+            "node" => {
+                self.node = u8::try_from(value)
+                    .ok()
+                    .and_then(fieldproof_wire::canopen::NodeId::new);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    pub(crate) fn give(&mut self, stimulus: &Stimulus) -> Result<(), Stop> {
+        let at_ns = self.session.now().as_nanos();
+        let what = describe(stimulus);
+        self.session
+            .lane()
+            .stimulate(stimulus)
+            .map_err(|error| match error {
+                StimulusError::NotOffered => {
+                    Stop::Bench(format!("this bench does not offer: {what}"))
+                }
+                StimulusError::Failed(reason) => Stop::Bench(format!("{what}: {reason}")),
+            })?;
+        self.session
+            .emit(Event::Stimulus(Box::new(StimulusEvent { at_ns, what })));
+        self.session.mark_sent();
+        Ok(())
+    }
+
+    pub(super) fn set_bit_rate(&mut self, bit_rate: u32) -> Result<(), Stop> {
+        let port = self.can_port()?;
+        let before = self.session.line(port);
+        self.undo.push(Undo::Line(port, before));
+        self.session.lane().set_line(port, Line::Can { bit_rate })?;
+        Ok(())
+    }
+}
+
+fn describe(stimulus: &Stimulus) -> String {
+    match stimulus {
+        Stimulus::Power { on: true } => "power on".into(),
+        Stimulus::Power { on: false } => "power off".into(),
+        Stimulus::ProcessValue { name, value } => format!("process value {name} = {value}"),
+        Stimulus::Condition { name, active: true } => format!("condition {name} begins"),
+        Stimulus::Condition {
+            name,
+            active: false,
+        } => format!("condition {name} ends"),
+        Stimulus::Setting { name, value } => format!("setting {name} = {value}"),
+    }
+}

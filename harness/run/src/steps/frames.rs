@@ -1,0 +1,212 @@
+//! `send`, `expect`, `expect-silence`: CAN frames as they stand.
+
+use std::time::Duration;
+
+use fieldproof_can::{Frame, Id, Pattern};
+use fieldproof_link::{Origin, PortIndex};
+use fieldproof_suite::model::{Expect, ExpectSilence, Send};
+use fieldproof_wire::canopen::{Service, identify};
+use fieldproof_wire::describe::describe_frame;
+
+use crate::limits::show;
+use crate::session::{Message, Received};
+use crate::stop::{Came, Stop};
+use crate::tester::{CAN, SERIAL, Tester};
+use crate::value::check_decode;
+
+/// How long past its limit an answer is still waited for, so that "late" and "never" can be told apart.
+const LATE_ANSWER: Duration = Duration::from_millis(200);
+
+impl Tester<'_> {
+    pub(super) fn send(&mut self, step: &Send) -> Result<(), Stop> {
+        self.send_frame(step.frame.0)
+    }
+
+    pub(super) fn expect(&mut self, step: &Expect) -> Result<(), Stop> {
+        let pattern = &step.frame.0;
+        let (name, promised) = self.promised(pattern.id());
+        let within = step.within.unwrap_or(promised);
+        let Some((frame, received)) = self.first_frame(pattern.id(), within)? else {
+            return Err(self.nothing_came(pattern, within));
+        };
+        if !pattern.matches(&frame) {
+            return Err(wrong_frame(pattern, &frame));
+        }
+        self.measure_response(name, &received, within)?;
+        for rule in &step.decode {
+            if let Some(object) = rule.object {
+                check_named_object(&frame, object.index, object.sub)?;
+            }
+            check_decode(rule, frame.bytes())?;
+        }
+        self.follow_received(&frame);
+        Ok(())
+    }
+
+    /// What an expected frame tells of the node: a boot-up means that it is pre-operational.
+    fn follow_received(&mut self, frame: &Frame) {
+        if let Some(Some((Service::ErrorControl, Some(node)))) = frame.standard_id().map(identify)
+            && frame.bytes() == [0]
+        {
+            self.node = Some(node);
+            self.watch.booted();
+        }
+    }
+
+    /// What the description promises for an answer with this identifier, and what the measurement is called.
+    fn promised(&self, id: Id) -> (&'static str, Duration) {
+        let timing = &self.device.timing;
+        let service = match id {
+            Id::Standard(id) => identify(id).map(|(service, _)| service),
+            Id::Extended(_) => None,
+        };
+        match service {
+            Some(Service::SdoResponse) => ("SDO response time", timing.sdo_response),
+            Some(Service::LssResponse) => ("LSS response time", timing.lss_response),
+            Some(Service::ErrorControl) => ("error control response time", timing.boot_up),
+            _ => ("response time", Duration::from_secs(1)),
+        }
+    }
+
+    fn nothing_came(&mut self, pattern: &Pattern, within: Duration) -> Stop {
+        let deadline = self.session.last_sent().end + within + LATE_ANSWER.min(within);
+        let late = self.session.first(deadline, |received| {
+            matches!(received.message, Message::Can(frame) if frame.id() == pattern.id())
+        });
+        let actual = match late {
+            Ok(Some(received)) => {
+                format!(
+                    "it came after {}",
+                    show(received.at.since(self.session.last_sent().end))
+                )
+            }
+            Ok(None) => "nothing".to_owned(),
+            Err(stop) => return stop,
+        };
+        Stop::mismatch(
+            format!("no frame {} came in time", show_id(pattern.id())),
+            format!("{pattern} within {}", show(within)),
+            actual,
+            Came::Silence,
+        )
+    }
+
+    pub(super) fn expect_silence(&mut self, step: &ExpectSilence) -> Result<(), Stop> {
+        let port = match &step.port {
+            Some(role) => self.port(role)?,
+            None => self.main_port()?,
+        };
+        let deadline = self.session.now() + step.lasting;
+        let watch = self.watch.clone();
+        let (node, transition) = (self.node, self.device.timing.nmt_transition);
+        let breaks_silence = |received: &Received| {
+            received.port == port
+                && received.origin == Origin::Bus
+                && match &received.message {
+                    Message::Serial { .. } => true,
+                    Message::Can(frame) if step.of.is_empty() => {
+                        !crate::unexpected::is_proper_heartbeat(
+                            frame,
+                            received.at,
+                            &watch,
+                            node,
+                            transition,
+                        )
+                    }
+                    Message::Can(frame) => frame
+                        .standard_id()
+                        .is_some_and(|id| step.of.contains(&id.raw())),
+                }
+        };
+        let Some(received) = self.session.first(deadline, breaks_silence)? else {
+            return Ok(());
+        };
+        let expected = format!("silence for {}", show(step.lasting));
+        match received.message {
+            Message::Can(frame) => Err(Stop::mismatch(
+                "something came where silence was expected",
+                expected,
+                format!("{frame}  {}", describe_frame(&frame)),
+                Came::Frame(frame),
+            )),
+            Message::Serial { bytes, .. } => Err(Stop::mismatch(
+                "something came where silence was expected",
+                expected,
+                crate::modbus::show_bytes(&bytes),
+                Came::Answer,
+            )),
+        }
+    }
+
+    /// The port that a suite means when it names none: CAN, or else serial.
+    pub(crate) fn main_port(&self) -> Result<PortIndex, Stop> {
+        self.port(self.main_role)
+    }
+}
+
+/// The role of the main port of a suite.
+pub(crate) const fn main_role(protocol: fieldproof_suite::model::Protocol) -> &'static str {
+    match protocol {
+        fieldproof_suite::model::Protocol::Canopen | fieldproof_suite::model::Protocol::Gateway => {
+            CAN
+        }
+        fieldproof_suite::model::Protocol::Modbus => SERIAL,
+    }
+}
+
+/// A frame came under the right identifier that is not the one expected.
+pub(super) fn wrong_frame(pattern: &Pattern, frame: &Frame) -> Stop {
+    let stop = Stop::mismatch(
+        "another frame came than expected",
+        format!("{pattern}{}", describe_pattern(pattern)),
+        format!("{frame}  {}", describe_frame(frame)),
+        Came::Frame(*frame),
+    );
+    if pattern.len() != frame.len() {
+        return stop.with_note(format!(
+            "{} data bytes were expected, {} came",
+            pattern.len(),
+            frame.len()
+        ));
+    }
+    let differing: Vec<String> = pattern
+        .mismatches(frame)
+        .iter()
+        .map(usize::to_string)
+        .collect();
+    match differing.len() {
+        0 => stop,
+        1 => stop.with_note(format!("byte {} differs", differing[0])),
+        _ => stop.with_note(format!("bytes {} differ", differing.join(", "))),
+    }
+}
+
+fn describe_pattern(pattern: &Pattern) -> String {
+    pattern
+        .exact()
+        .map(|frame| format!("  {}", describe_frame(&frame)))
+        .unwrap_or_default()
+}
+
+fn check_named_object(frame: &Frame, index: u16, sub: u8) -> Result<(), Stop> {
+    let named = match frame.bytes() {
+        [_, low, high, named_sub, ..] => (u16::from_le_bytes([*low, *high]), *named_sub),
+        _ => (0, 0),
+    };
+    if named == (index, sub) {
+        return Ok(());
+    }
+    Err(Stop::mismatch(
+        "the answer names another object",
+        format!("{index:04X}h:{sub:02X}"),
+        format!("{:04X}h:{:02X}", named.0, named.1),
+        Came::Frame(*frame),
+    ))
+}
+
+fn show_id(id: Id) -> String {
+    match id {
+        Id::Standard(id) => format!("{:03X}h", id.raw()),
+        Id::Extended(id) => format!("{:08X}h", id.raw()),
+    }
+}

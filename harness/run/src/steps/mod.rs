@@ -1,0 +1,77 @@
+//! What each verb does. One file a family of verbs.
+
+mod bench;
+mod frames;
+mod modbus;
+mod nmt;
+mod pdo;
+mod sdo;
+mod serial;
+
+use fieldproof_suite::model::Step;
+
+pub(crate) use frames::main_role;
+pub(crate) use nmt::wire_state;
+pub(crate) use sdo::multiplexer;
+
+use crate::stop::Stop;
+use crate::tester::Tester;
+
+impl Tester<'_> {
+    /// Carries out one step.
+    pub(crate) fn step(&mut self, step: &Step) -> Result<(), Stop> {
+        match step {
+            Step::Send(step) => self.send(step),
+            Step::Expect(step) => self.expect(step),
+            Step::ExpectSilence(step) => self.expect_silence(step),
+            Step::Nmt(step) => self.nmt(step),
+            Step::NmtEnter(state) => self.nmt_enter(*state),
+            Step::ExpectState(step) => self.expect_state(step),
+            Step::ExpectBootUp(step) => self.expect_boot_up(step),
+            Step::ExpectHeartbeat(step) => self.expect_heartbeat(step),
+            Step::Sync(step) => self.sync(step),
+            Step::StartSync(step) => self.start_sync(step),
+            Step::StopSync => self.stop_sync(),
+            Step::ExpectTpdo(step) => self.expect_tpdo(step),
+            Step::SendRpdo(step) => self.send_rpdo(step),
+            Step::SdoRead(step) => self.sdo_read(step),
+            Step::SdoWrite(step) => self.sdo_write(step),
+            Step::Modbus(step) => self.modbus(step),
+            Step::SendBytes(step) => self.send_raw_bytes(step),
+            Step::ExpectBytes(step) => self.expect_bytes(step),
+            Step::Stimulate(step) => self.stimulate(step),
+            Step::SetBitRate(bit_rate) => self.set_bit_rate(*bit_rate),
+        }
+    }
+}
+
+/// The name of the check a step makes, if it has one.
+pub(crate) fn check_of(step: &Step) -> Option<&str> {
+    match step {
+        Step::Expect(step) => step.check.as_deref(),
+        Step::ExpectSilence(step) => step.check.as_deref(),
+        Step::ExpectState(step) => step.check.as_deref(),
+        Step::ExpectTpdo(step) => step.check.as_deref(),
+        Step::SdoRead(step) => step.check.as_deref(),
+        Step::SdoWrite(step) => step.check.as_deref(),
+        Step::Modbus(step) => step.check.as_deref(),
+        Step::ExpectBytes(step) => step.check.as_deref(),
+        Step::Send(_)
+        | Step::Nmt(_)
+        | Step::NmtEnter(_)
+        | Step::ExpectBootUp(_)
+        | Step::ExpectHeartbeat(_)
+        | Step::Sync(_)
+        | Step::StartSync(_)
+        | Step::StopSync
+        | Step::SendRpdo(_)
+        | Step::SendBytes(_)
+        | Step::Stimulate(_)
+        | Step::SetBitRate(_) => None,
+    }
+}
+
+/// Whether a step only prepares: when it does not succeed, nothing was judged.
+pub(crate) fn is_precondition(step: &Step) -> bool {
+    matches!(step, Step::NmtEnter(_))
+}

@@ -1,0 +1,185 @@
+//! `sdo-read`, `sdo-write`.
+
+use fieldproof_suite::model::{
+    AbortExpectation, ReadExpectation, SdoRead, SdoWrite, WriteExpectation,
+};
+use fieldproof_suite::scalar::ObjectAddress;
+use fieldproof_wire::canopen::{AbortCode, Multiplexer};
+
+use crate::modbus::show_bytes;
+use crate::sdo::{Outcome, show_abort};
+use crate::stop::{Came, Stop};
+use crate::tester::Tester;
+use crate::value::{Actual, Saved, decode, encode, resolve, size};
+
+pub(crate) const fn multiplexer(object: ObjectAddress) -> Multiplexer {
+    Multiplexer::new(object.index, object.sub)
+}
+
+impl Tester<'_> {
+    pub(super) fn sdo_read(&mut self, step: &SdoRead) -> Result<(), Stop> {
+        let object = multiplexer(step.object);
+        let within = step.within.unwrap_or(self.device.timing.sdo_response);
+        let bytes = match self.sdo_upload(object, within)? {
+            Outcome::Done(bytes) => bytes,
+            Outcome::Refused(code) => return self.judge_refused_read(step, code),
+        };
+        let Some(actual) = decode(step.value_type, &bytes) else {
+            return Err(Stop::mismatch(
+                format!("{object} has another size"),
+                format!("{} bytes", size(step.value_type).unwrap_or_default()),
+                format!("{} bytes: {}", bytes.len(), show_bytes(&bytes)),
+                Came::Other,
+            ));
+        };
+        if let ReadExpectation::Abort(abort) = &step.expect {
+            return Err(Stop::mismatch(
+                format!("reading {object} is not refused"),
+                self.show_accepted(abort),
+                actual.to_string(),
+                came(&actual),
+            ));
+        }
+        check_read(object, &step.expect, &actual, &self.saved)?;
+        if let Some(words) = &step.observe {
+            self.observe(words, actual.to_string());
+        }
+        if let Some(name) = &step.save {
+            self.saved.insert(name.clone(), actual);
+        }
+        Ok(())
+    }
+
+    fn judge_refused_read(&mut self, step: &SdoRead, code: AbortCode) -> Result<(), Stop> {
+        let object = multiplexer(step.object);
+        match &step.expect {
+            ReadExpectation::Abort(abort) => self.check_abort(object, abort, code),
+            // A value is recorded whatever it is, so its absence is recorded as well.
+            ReadExpectation::Any if step.observe.is_some() => {
+                let words = step.observe.as_deref().unwrap_or_default();
+                self.observe(words, format!("refused: {}", show_abort(code)));
+                Ok(())
+            }
+            _ => Err(Stop::mismatch(
+                format!("reading {object} is refused"),
+                "a value",
+                show_abort(code),
+                Came::Abort(code.0),
+            )),
+        }
+    }
+
+    pub(super) fn sdo_write(&mut self, step: &SdoWrite) -> Result<(), Stop> {
+        let object = multiplexer(step.object);
+        let within = step.within.unwrap_or(self.device.timing.sdo_response);
+        let bytes = encode(step.value_type, &step.value, step.unit, &self.saved)?;
+        let before = self.value_before(object)?;
+        self.remember_object(object, &before);
+        let outcome = self.sdo_download(object, &bytes, within)?;
+        if let Outcome::Refused(_) = outcome
+            && before.is_some()
+        {
+            self.undo.forget_last();
+        }
+        match (&step.expect, outcome) {
+            (WriteExpectation::Ok, Outcome::Done(())) => self.check_remembered(object, &before),
+            (WriteExpectation::Ok, Outcome::Refused(code)) => Err(Stop::mismatch(
+                format!("writing {object} is refused"),
+                "it is accepted",
+                show_abort(code),
+                Came::Abort(code.0),
+            )),
+            (WriteExpectation::Abort(abort), Outcome::Refused(code)) => {
+                self.check_abort(object, abort, code)
+            }
+            (WriteExpectation::Abort(abort), Outcome::Done(())) => Err(Stop::mismatch(
+                format!("writing {object} is not refused"),
+                self.show_accepted(abort),
+                "it is accepted",
+                Came::Answer,
+            )),
+        }
+    }
+
+    fn check_abort(
+        &mut self,
+        object: Multiplexer,
+        expected: &AbortExpectation,
+        code: AbortCode,
+    ) -> Result<(), Stop> {
+        let passes = match expected.strict {
+            Some(strict) if self.strict => code.0 == strict,
+            _ => expected.abort.contains(&code.0) || expected.strict == Some(code.0),
+        };
+        if passes {
+            return Ok(());
+        }
+        Err(Stop::mismatch(
+            format!("{object} is refused with another abort code"),
+            self.show_accepted(expected),
+            show_abort(code),
+            Came::Abort(code.0),
+        ))
+    }
+
+    fn show_accepted(&self, expected: &AbortExpectation) -> String {
+        let codes = match expected.strict {
+            Some(strict) if self.strict => vec![strict],
+            _ => expected.abort.clone(),
+        };
+        let codes: Vec<String> = codes
+            .into_iter()
+            .map(|code| show_abort(AbortCode(code)))
+            .collect();
+        format!("abort {}", codes.join(" or "))
+    }
+}
+
+fn came(actual: &Actual) -> Came {
+    match actual {
+        Actual::Number(number) => Came::Value(*number),
+        Actual::Text(_) => Came::Answer,
+    }
+}
+
+fn check_read(
+    object: Multiplexer,
+    expect: &ReadExpectation,
+    actual: &Actual,
+    saved: &Saved,
+) -> Result<(), Stop> {
+    let wrong = |expected: String| {
+        Err(Stop::mismatch(
+            format!("{object} holds another value"),
+            expected,
+            actual.to_string(),
+            came(actual),
+        ))
+    };
+    match expect {
+        ReadExpectation::Any | ReadExpectation::Abort(_) => Ok(()),
+        ReadExpectation::Value(value) => {
+            let expected = resolve(value, None, saved)?;
+            if expected == *actual {
+                Ok(())
+            } else {
+                wrong(expected.to_string())
+            }
+        }
+        ReadExpectation::OneOf(values) => {
+            let expected: Vec<Actual> = values
+                .iter()
+                .map(|value| resolve(value, None, saved))
+                .collect::<Result<_, _>>()?;
+            if expected.contains(actual) {
+                return Ok(());
+            }
+            let names: Vec<String> = expected.iter().map(Actual::to_string).collect();
+            wrong(format!("one of {}", names.join(", ")))
+        }
+        ReadExpectation::Range { from, to } => match actual {
+            Actual::Number(number) if number >= from && number <= to => Ok(()),
+            _ => wrong(format!("{from} to {to}")),
+        },
+    }
+}

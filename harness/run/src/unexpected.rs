@@ -1,0 +1,131 @@
+//! What came and nothing expected: a fault on SDO, LSS, error control and Modbus, a note on EMCY and PDO.
+
+use std::time::Duration;
+
+use fieldproof_can::Frame;
+use fieldproof_link::{Instant, Origin};
+use fieldproof_suite::model::{Forbidden, NmtState};
+use fieldproof_wire::canopen::nmt::State;
+use fieldproof_wire::canopen::{NodeId, Service, identify};
+use fieldproof_wire::describe::describe_frame;
+
+use crate::modbus::show_bytes;
+use crate::node::NodeWatch;
+use crate::session::{Message, Received};
+use crate::steps::wire_state;
+use crate::stop::{Came, Stop};
+use crate::tester::{SERIAL, Tester};
+
+/// What an unexpected frame amounts to.
+enum Judgement {
+    /// Nothing: a heartbeat as it should be, traffic of others.
+    Proper,
+    /// A line in the report.
+    Noted(String),
+    /// A fault.
+    Wrong(Stop),
+}
+
+impl Tester<'_> {
+    /// Judges everything that came and nothing expected; the first fault ends it.
+    pub(crate) fn judge_unexpected(&mut self, forbids: &[Forbidden]) -> Result<(), Stop> {
+        for received in self.session.take_unexpected() {
+            match self.judge_one(&received, forbids) {
+                Judgement::Proper => {}
+                Judgement::Noted(text) => self.notes.push(text),
+                Judgement::Wrong(stop) => return Err(stop),
+            }
+        }
+        Ok(())
+    }
+
+    fn judge_one(&self, received: &Received, forbids: &[Forbidden]) -> Judgement {
+        if received.origin != Origin::Bus {
+            return Judgement::Proper;
+        }
+        match &received.message {
+            Message::Can(frame) => self.judge_frame(frame, received.at, forbids),
+            Message::Serial { bytes, .. } if self.session.port_name(received.port) == SERIAL => {
+                Judgement::Wrong(unexpected("Modbus frame", &show_bytes(bytes), Came::Answer))
+            }
+            // Behind a gateway the device is the master and may ask what it likes.
+            Message::Serial { .. } => Judgement::Proper,
+        }
+    }
+
+    fn judge_frame(&self, frame: &Frame, at: Instant, forbids: &[Forbidden]) -> Judgement {
+        let Some((service, node)) = frame.standard_id().and_then(identify) else {
+            return Judgement::Proper;
+        };
+        let from_device = node.is_none() || node == self.node;
+        let show = || format!("{frame}  {}", describe_frame(frame));
+        match service {
+            Service::SdoResponse if from_device => {
+                Judgement::Wrong(unexpected("SDO answer", &show(), Came::Frame(*frame)))
+            }
+            Service::LssResponse => {
+                Judgement::Wrong(unexpected("LSS answer", &show(), Came::Frame(*frame)))
+            }
+            Service::ErrorControl => self.judge_error_control(frame, at, node),
+            Service::Emergency if from_device && forbids.contains(&Forbidden::Emergency) => {
+                Judgement::Wrong(unexpected("EMCY", &show(), Came::Frame(*frame)))
+            }
+            Service::TransmitPdo(_) if from_device && forbids.contains(&Forbidden::Pdo) => {
+                Judgement::Wrong(unexpected("PDO", &show(), Came::Frame(*frame)))
+            }
+            Service::Emergency if from_device => Judgement::Noted(show()),
+            _ => Judgement::Proper,
+        }
+    }
+
+    fn judge_error_control(&self, frame: &Frame, at: Instant, node: Option<NodeId>) -> Judgement {
+        let transition = self.device.timing.nmt_transition;
+        if is_proper_heartbeat(frame, at, &self.watch, self.node, transition) {
+            return Judgement::Proper;
+        }
+        let show = format!("{frame}  {}", describe_frame(frame));
+        // The boot-up of a node that was reset is due, only not waited for.
+        if frame.bytes() == [0] && self.watch.boot_up_due {
+            return Judgement::Proper;
+        }
+        if node != self.node && frame.bytes() != [0] {
+            return Judgement::Proper;
+        }
+        Judgement::Wrong(unexpected(
+            "error control message",
+            &show,
+            Came::Frame(*frame),
+        ))
+    }
+}
+
+/// Whether a frame is a heartbeat of the node that is on, with the state that the node was told to be in.
+pub(crate) fn is_proper_heartbeat(
+    frame: &Frame,
+    at: Instant,
+    watch: &NodeWatch,
+    node: Option<NodeId>,
+    transition: Duration,
+) -> bool {
+    let Some((Service::ErrorControl, from)) = frame.standard_id().and_then(identify) else {
+        return false;
+    };
+    let [state] = frame.bytes() else { return false };
+    let state = match State::from_code(*state) {
+        State::Stopped => NmtState::Stopped,
+        State::Operational => NmtState::Operational,
+        State::PreOperational => NmtState::PreOperational,
+        _ => return false,
+    };
+    debug_assert_eq!(wire_state(state).code(), frame.bytes()[0]);
+    from == node && watch.heartbeat && watch.agrees(state, at, transition)
+}
+
+fn unexpected(kind: &str, came: &str, what: Came) -> Stop {
+    Stop::mismatch(
+        format!("an unexpected {kind} came"),
+        "nothing more",
+        came,
+        what,
+    )
+}

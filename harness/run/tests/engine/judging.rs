@@ -1,0 +1,320 @@
+//! Verdicts.
+
+use std::time::Duration;
+
+use fieldproof_can::Frame;
+use fieldproof_record::{Event, Verdict};
+use fieldproof_suite::Position;
+use fieldproof_suite::device::{Deviation, Feature, Instead};
+
+use crate::scripted::{Answers, Scripted, Setup, frame, soon};
+
+const READ: &str = "
+  - case: read
+    title: Reads 2000h
+    cite: [book]
+    steps:
+      - sdo-read: {object: \"2000:00\", as: u32, expect: 5}
+";
+
+/// Answers a read of 2000h with these frames.
+fn answering(answers: &'static [&'static str]) -> Scripted {
+    Scripted::new(move |request: &Frame| {
+        if *request == frame("601#4000200000000000") {
+            answers.iter().map(|text| soon(text)).collect()
+        } else {
+            Answers::new()
+        }
+    })
+}
+
+#[test]
+fn the_right_answer_passes() {
+    let played = Setup::default().play(answering(&["581#4300200005000000"]), READ);
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    assert_eq!(played.outcome.counts.pass, 1);
+}
+
+#[test]
+fn a_wrong_value_fails_and_shows_the_frames() {
+    let played = Setup::default().play(answering(&["581#4300200006000000"]), READ);
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "2000h:00 holds another value")
+    );
+    let case = played.case();
+    assert_eq!(case.failures[0].expected, "5");
+    assert_eq!(case.failures[0].actual, "6");
+    let raw: Vec<&str> = case.excerpt.iter().map(|line| line.raw.as_str()).collect();
+    assert_eq!(raw, ["601#4000200000000000", "581#4300200006000000"]);
+    assert_eq!(
+        case.failures[0].place.text.trim(),
+        "- sdo-read: {object: \"2000:00\", as: u32, expect: 5}"
+    );
+}
+
+#[test]
+fn an_answer_that_comes_twice_fails() {
+    let twice = answering(&["581#4300200005000000", "581#4300200005000000"]);
+    let played = Setup::default().play(twice, READ);
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "an unexpected SDO answer came")
+    );
+}
+
+#[test]
+fn an_emcy_is_noted_and_fails_only_where_it_is_forbidden() {
+    let emcy = ["081#1000010000000000", "581#4300200005000000"];
+    let device = || {
+        Scripted::new(move |request: &Frame| {
+            if *request == frame("601#4000200000000000") {
+                emcy.map(soon).to_vec()
+            } else {
+                Vec::new()
+            }
+        })
+    };
+    let played = Setup::default().play(device(), READ);
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    assert!(
+        played
+            .events
+            .iter()
+            .any(|event| matches!(event, Event::Note(note) if note.text.contains("081#")))
+    );
+
+    let forbidding = READ.replace("    steps:", "    forbids: [emergency]\n    steps:");
+    let played = Setup::default().play(device(), &forbidding);
+    assert_eq!(played.verdict(), (Verdict::Fail, "an unexpected EMCY came"));
+}
+
+#[test]
+fn an_abort_must_name_the_object_that_was_asked_for() {
+    let played = Setup::default().play(answering(&["581#8001200011000906"]), READ);
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "the abort names another object")
+    );
+}
+
+#[test]
+fn a_spontaneous_boot_up_fails() {
+    let booting = answering(&["581#4300200005000000", "701#00"]);
+    let played = Setup::default().play(booting, READ);
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "an unexpected error control message came")
+    );
+}
+
+#[test]
+fn late_and_never_are_told_apart() {
+    let after = |milliseconds: u64| {
+        Scripted::new(move |request: &Frame| {
+            if *request == frame("601#4000200000000000") {
+                vec![(
+                    Duration::from_millis(milliseconds),
+                    frame("581#4300200005000000"),
+                )]
+            } else {
+                Vec::new()
+            }
+        })
+    };
+    let expecting = "
+  - case: read
+    title: Reads 2000h
+    cite: [book]
+    steps:
+      - send: \"601#4000200000000000\"
+      - expect: {frame: \"581#4300200005000000\", within: 20 ms}
+";
+    assert_eq!(
+        Setup::default().play(after(19), expecting).verdict(),
+        (Verdict::Pass, "")
+    );
+    let late = Setup::default().play(after(30), expecting);
+    assert_eq!(
+        late.verdict(),
+        (Verdict::Fail, "no frame 581h came in time")
+    );
+    assert!(
+        late.case().failures[0]
+            .actual
+            .starts_with("it came after 30."),
+        "{:?}",
+        late.case()
+    );
+    let never = Setup::default().play(after(3_000), expecting);
+    assert_eq!(never.case().failures[0].actual, "nothing");
+}
+
+#[test]
+fn a_measurement_across_its_limit_decides_nothing() {
+    let device = || {
+        Scripted::new(|request: &Frame| {
+            if *request == frame("601#4000200000000000") {
+                vec![(Duration::from_millis(19), frame("581#4300200005000000"))]
+            } else {
+                Vec::new()
+            }
+        })
+    };
+    let expecting = "
+  - case: read
+    title: Reads 2000h
+    cite: [book]
+    steps:
+      - send: \"601#4000200000000000\"
+      - expect: {frame: \"581#4300200005000000\", within: 20 ms}
+";
+    let setup = Setup {
+        uncertainty: Duration::from_millis(2),
+        ..Setup::default()
+    };
+    let played = setup.play(device(), expecting);
+    assert_eq!(
+        played.verdict(),
+        (
+            Verdict::Inconclusive,
+            "SDO response time cannot be decided on this link"
+        )
+    );
+}
+
+#[test]
+fn an_expectation_does_not_look_past_the_last_send() {
+    // The answer to the first request comes before the second is sent: it is not an answer to the second.
+    let device = Scripted::new(|request: &Frame| {
+        if *request == frame("601#4000200000000000") {
+            vec![soon("581#4300200005000000")]
+        } else {
+            Vec::new()
+        }
+    });
+    let played = Setup::default().play(
+        device,
+        "
+  - case: two-sends
+    title: Two requests, one answer
+    cite: [book]
+    steps:
+      - send: \"601#4000200000000000\"
+      - expect-silence: {lasting: 10 ms, of: [7E4h]}
+      - send: \"601#4000300000000000\"
+      - expect: {frame: \"581#4300200005000000\", within: 20 ms}
+",
+    );
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "no frame 581h came in time")
+    );
+}
+
+#[test]
+fn a_control_that_does_not_pass_leaves_the_question_open() {
+    let played = Setup::default().play(
+        answering(&["581#8000200000000206"]),
+        "
+  - case: refused
+    title: A write is refused
+    cite: [book]
+    effects: [writes]
+    control:
+      - sdo-read: {object: \"2000:00\", as: u32}
+    steps:
+      - sdo-write: {object: \"2000:00\", as: u32, value: 1, expect: {abort: 0x06010002}}
+",
+    );
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Inconclusive, "reading 2000h:00 is refused")
+    );
+}
+
+#[test]
+fn a_documented_deviation_is_no_failure_but_only_the_documented_one() {
+    let refused = "
+  - case: refused
+    title: A read is refused
+    cite: [book]
+    steps:
+      - sdo-read: {object: \"2000:00\", as: u32, expect: {abort: 0x06020000}, check: sdo.unknown-object}
+";
+    let deviates = |code| {
+        vec![Deviation {
+            check: "sdo.unknown-object".into(),
+            instead: Instead::Abort(code),
+            cite: Vec::new(),
+            at: Position::default(),
+        }]
+    };
+    let device = || answering(&["581#8000200000000008"]);
+    let setup = Setup {
+        deviates: deviates(0x0800_0000),
+        ..Setup::default()
+    };
+    assert_eq!(
+        setup.play(device(), refused).verdict().0,
+        Verdict::Deviation
+    );
+    let setup = Setup {
+        deviates: deviates(0x0601_0000),
+        ..Setup::default()
+    };
+    assert_eq!(setup.play(device(), refused).verdict().0, Verdict::Fail);
+    assert_eq!(
+        Setup::default().play(device(), refused).verdict().0,
+        Verdict::Fail
+    );
+}
+
+#[test]
+fn what_is_not_claimed_or_not_permitted_is_skipped_with_the_reason() {
+    let needing = READ.replace("    steps:", "    needs: [lss]\n    steps:");
+    let played = Setup::default().play(answering(&[]), &needing);
+    assert_eq!(
+        played.case().reason.as_deref(),
+        Some("the device does not claim lss")
+    );
+    let moving = READ.replace("    steps:", "    effects: [moves]\n    steps:");
+    let played = Setup::default().play(answering(&[]), &moving);
+    assert_eq!(
+        played.case().reason.as_deref(),
+        Some("the bench does not permit moves")
+    );
+    assert_eq!(played.verdict().0, Verdict::Skipped);
+}
+
+#[test]
+fn a_heartbeat_with_a_state_the_node_was_not_told_fails() {
+    // Heartbeats are switched on, the node is stopped, and says that it is operational.
+    let device = || {
+        Scripted::new(|request: &Frame| match request.to_string().as_str() {
+            "601#2B1710000A000000" => vec![soon("581#6017100000000000")],
+            "601#4017100000000000" => vec![soon("581#4B17100000000000")],
+            "000#0201" => vec![(Duration::from_millis(20), frame("701#05"))],
+            _ => Vec::new(),
+        })
+    };
+    let cases = "
+  - case: stop
+    title: Stopped
+    cite: [book]
+    effects: [writes]
+    steps:
+      - sdo-write: {object: \"1017:00\", as: u16, value: 10 ms, unit: 1 ms}
+      - nmt: stop
+      - expect-silence: {lasting: 50 ms, of: [581h]}
+";
+    let setup = Setup {
+        features: vec![Feature::SdoServer],
+        ..Setup::default()
+    };
+    let played = setup.play(device(), cases);
+    assert_eq!(
+        played.verdict().1,
+        "an unexpected error control message came"
+    );
+}
