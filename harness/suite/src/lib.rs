@@ -8,6 +8,8 @@
 pub mod code;
 pub mod device;
 mod diagnostic;
+#[cfg(test)]
+mod documented;
 mod expand;
 mod file;
 mod forms;
@@ -17,8 +19,10 @@ mod problem;
 mod read;
 mod read_with;
 pub mod scalar;
+mod schema;
 mod yaml;
 
 pub use diagnostic::{Diagnostic, Position, Severity};
 pub use expand::Environment;
 pub use load::{CaseRef, Loaded, SourceFile, Suite, load, load_device};
+pub use schema::{device_schema, schema};
