@@ -1,5 +1,7 @@
 //! Every kind with every fault and variant: it can be built, it is named well, and what it does follows from its seed.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::BTreeSet;
 use std::time::Duration;
 

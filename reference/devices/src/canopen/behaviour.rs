@@ -19,8 +19,18 @@ pub struct Behaviour {
 
     /// The boot-up message is sent.
     pub boot_up: bool,
+    /// Writing 0 to 1017h ends the heartbeat.
+    pub heartbeat_can_be_stopped: bool,
+    /// Which NMT commands are obeyed beside those to the own node-ID.
+    pub nmt_address: NmtAddress,
+    /// An NMT command specifier that does not exist stops the node.
+    pub unknown_nmt_command_stops: bool,
     /// The state byte of heartbeat and guarding.
     pub state_codes: StateCodes,
+    /// A request with an unknown command specifier is refused, and not ignored.
+    pub unknown_command_refused: bool,
+    /// A number travels in an expedited upload with its most significant byte first.
+    pub upload_big_endian: bool,
     /// The abort code for a sub-index that does not exist.
     pub abort_no_sub_index: u32,
     /// What bytes 1 to 3 of an abort name.
@@ -45,8 +55,22 @@ pub struct Behaviour {
     pub guarding_toggles: bool,
     /// Clearing bit 30 of 1005h ends the production of SYNC.
     pub sync_can_be_stopped: bool,
+    /// SYNCs beyond its transmission type that a cyclic TPDO waits for.
+    pub surplus_syncs: u8,
+    /// A TPDO is sent though bit 31 of its COB-ID is set.
+    pub invalid_tpdo_sent: bool,
+    /// A number travels in a TPDO with its most significant byte first.
+    pub tpdo_big_endian: bool,
+    /// Milliseconds that an event timer counts.
+    pub event_timer_unit_ms: u32,
+    /// What 1018h holds at sub-indexes 1 to 4 in place of the dictionary's values.
+    pub identity: Option<[u32; 4]>,
     /// When a new node-ID takes effect.
     pub node_activation: NodeActivation,
+    /// Store configuration stores, and does not only say so.
+    pub lss_stores: bool,
+    /// The serial number that is named selects or does not select the slave.
+    pub lss_serial_matters: bool,
     /// The command specifier of the answer to inquire revision number.
     pub lss_revision_specifier: u8,
 }
@@ -58,6 +82,17 @@ pub enum AbortMultiplexer {
     OfRequest,
     /// The object at the next index.
     NextIndex,
+}
+
+/// Which NMT commands are obeyed beside those to the own node-ID.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NmtAddress {
+    /// Those to all nodes.
+    All,
+    /// None.
+    OwnOnly,
+    /// Those to any node.
+    Any,
 }
 
 /// When a new node-ID takes effect.
@@ -98,6 +133,18 @@ impl Default for Behaviour {
             remote_frames_answered: true,
             heartbeat_on_write: false,
             boot_up: true,
+            heartbeat_can_be_stopped: true,
+            nmt_address: NmtAddress::All,
+            unknown_nmt_command_stops: false,
+            unknown_command_refused: true,
+            upload_big_endian: false,
+            surplus_syncs: 0,
+            invalid_tpdo_sent: false,
+            tpdo_big_endian: false,
+            event_timer_unit_ms: 1,
+            identity: None,
+            lss_stores: true,
+            lss_serial_matters: true,
             state_codes: StateCodes::STANDARD,
             abort_no_sub_index: 0x0609_0011,
             abort_multiplexer: AbortMultiplexer::OfRequest,

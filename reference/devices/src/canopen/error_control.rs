@@ -49,6 +49,9 @@ impl Slave {
     fn start_heartbeat(&mut self, now: Instant, at_once: bool) {
         let period = self.objects.number(PRODUCER_TIME).unwrap_or(0);
         let period = Duration::from_millis(u64::from(period));
+        if period.is_zero() && !self.behaviour.heartbeat_can_be_stopped {
+            return;
+        }
         let first = if at_once { now } else { now + period };
         self.error_control.heartbeat_period = period;
         self.error_control.heartbeat = (!period.is_zero()).then_some(first);

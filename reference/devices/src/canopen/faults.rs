@@ -1,6 +1,6 @@
 //! The faults that a CANopen side can be given, each one departure from one clause.
 
-use super::{AbortMultiplexer, NodeActivation, StateCodes};
+use super::{AbortMultiplexer, NmtAddress, NodeActivation, StateCodes};
 use crate::Fault;
 
 pub(crate) const ABORT_CODE_WRONG: Fault = Fault {
@@ -135,4 +135,100 @@ pub(crate) const SYNC_NOT_STOPPED: Fault = Fault {
     words: "goes on producing SYNC when bit 30 of 1005h is cleared",
     caught_by: "sync",
     apply: |behaviour| behaviour.canopen.sync_can_be_stopped = false,
+};
+
+pub(crate) const HEARTBEAT_NOT_STOPPED: Fault = Fault {
+    name: "heartbeat-not-stopped",
+    breaks: "CiA 301: object 1017h, 0 disables the heartbeat",
+    words: "goes on sending its heartbeat when 0 is written to 1017h",
+    caught_by: "error-control",
+    apply: |behaviour| behaviour.canopen.heartbeat_can_be_stopped = false,
+};
+
+pub(crate) const NMT_TO_ALL_IGNORED: Fault = Fault {
+    name: "nmt-to-all-ignored",
+    breaks: "CiA 301: NMT commands, node-ID 0 addresses all nodes",
+    words: "ignores an NMT command to node-ID 0",
+    caught_by: "nmt",
+    apply: |behaviour| behaviour.canopen.nmt_address = NmtAddress::OwnOnly,
+};
+
+pub(crate) const NMT_TO_ANOTHER_OBEYED: Fault = Fault {
+    name: "nmt-to-another-obeyed",
+    breaks: "CiA 301: NMT commands, node-ID",
+    words: "obeys NMT commands to other nodes",
+    caught_by: "nmt",
+    apply: |behaviour| behaviour.canopen.nmt_address = NmtAddress::Any,
+};
+
+pub(crate) const UNKNOWN_NMT_COMMAND_STOPS: Fault = Fault {
+    name: "unknown-nmt-command-stops",
+    breaks: "CiA 301: NMT commands, command specifier",
+    words: "takes a command specifier that does not exist for stop",
+    caught_by: "nmt",
+    apply: |behaviour| behaviour.canopen.unknown_nmt_command_stops = true,
+};
+
+pub(crate) const UNKNOWN_COMMAND_IGNORED: Fault = Fault {
+    name: "unknown-command-ignored",
+    breaks: "CiA 301: SDO abort transfer, abort code 05040001h",
+    words: "does not answer an SDO request with an unknown command specifier",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.unknown_command_refused = false,
+};
+
+pub(crate) const UPLOAD_BYTE_ORDER: Fault = Fault {
+    name: "upload-byte-order",
+    breaks: "CiA 301: transfer syntax of numbers, least significant byte first",
+    words: "sends numbers in an SDO with the most significant byte first",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.upload_big_endian = true,
+};
+
+pub(crate) const SYNC_COUNTED_WRONG: Fault = Fault {
+    name: "sync-counted-wrong",
+    breaks: "CiA 301: PDO transmission type 1 to 240",
+    words: "waits for one SYNC more than the transmission type says",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.surplus_syncs = 1,
+};
+
+pub(crate) const INVALID_TPDO_SENT: Fault = Fault {
+    name: "invalid-tpdo-sent",
+    breaks: "CiA 301: PDO COB-ID, bit 31",
+    words: "sends a TPDO though bit 31 of its COB-ID is set",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.invalid_tpdo_sent = true,
+};
+
+pub(crate) const TPDO_BYTE_ORDER: Fault = Fault {
+    name: "tpdo-byte-order",
+    breaks: "CiA 301: transfer syntax of numbers, least significant byte first",
+    words: "sends numbers in a TPDO with the most significant byte first",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.tpdo_big_endian = true,
+};
+
+pub(crate) const EVENT_TIMER_UNIT: Fault = Fault {
+    name: "event-timer-unit",
+    breaks: "CiA 301: PDO communication parameter, the event timer counts milliseconds",
+    words: "counts its event timers in 10 ms",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.event_timer_unit_ms = 10,
+};
+
+pub(crate) const LSS_STORE_FORGETS: Fault = Fault {
+    name: "lss-store-forgets",
+    breaks: "CiA 305: store configuration protocol",
+    words: "says that it has stored node-ID and bit rate, and has not",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_stores = false,
+};
+
+pub(crate) const LSS_SERIAL_IGNORED: Fault = Fault {
+    name: "lss-serial-ignored",
+    breaks: "CiA 305: switch state selective protocol, serial number",
+    words: "is selected by any serial number",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_serial_matters = false,
 };

@@ -86,7 +86,9 @@ impl Slave {
             .objects
             .number(Address::new(IDENTITY, part + 1))
             .unwrap_or(0);
-        let matches = u32::from_le_bytes(*named) == own && (part == expected || part == 0);
+        let same =
+            u32::from_le_bytes(*named) == own || (part == 3 && !self.behaviour.lss_serial_matters);
+        let matches = same && (part == expected || part == 0);
         self.lss = match (matches, part) {
             (false, _) => LssState::Waiting,
             (true, 3) => LssState::Configuration,
@@ -129,6 +131,9 @@ impl Slave {
     }
 
     fn store_configuration(&mut self) {
+        if !self.behaviour.lss_stores {
+            return;
+        }
         self.memory.node = self.pending_node;
         self.memory.bit_rate = self.pending_bit_rate;
         self.show_configuration();

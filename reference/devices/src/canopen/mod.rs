@@ -24,7 +24,7 @@ pub(crate) mod variants;
 
 pub(crate) use abort::Abort;
 pub(crate) use address::Address;
-pub use behaviour::{AbortMultiplexer, Behaviour, NodeActivation, StateCodes};
+pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, StateCodes};
 pub(crate) use emergency::HARDWARE;
 use nmt::State;
 pub(crate) use objects::Objects;

@@ -2,8 +2,8 @@
 
 use fieldproof_can::Frame;
 
-use super::Behaviour;
 use super::queue::Service;
+use super::{Behaviour, NmtAddress};
 
 /// The NMT state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,11 +63,16 @@ impl Command {
     /// | --- | --- |
     /// | 0 | 01h start, 02h stop, 80h enter pre-operational, 81h reset node, 82h reset communication |
     /// | 1 | node-ID; 0 means all |
-    pub(crate) fn of(frame: &Frame, node: u8) -> Option<Command> {
+    pub(crate) fn of(frame: &Frame, node: u8, behaviour: &Behaviour) -> Option<Command> {
         let &[command, addressed] = frame.bytes() else {
             return None;
         };
-        if addressed != 0 && addressed != node {
+        let meant = match behaviour.nmt_address {
+            NmtAddress::All => addressed == 0 || addressed == node,
+            NmtAddress::OwnOnly => addressed == node,
+            NmtAddress::Any => true,
+        };
+        if !meant {
             return None;
         }
         Some(match command {
@@ -76,6 +81,7 @@ impl Command {
             0x80 => Command::Enter(State::PreOperational),
             0x81 => Command::ResetNode,
             0x82 => Command::ResetCommunication,
+            _ if behaviour.unknown_nmt_command_stops => Command::Enter(State::Stopped),
             _ => return None,
         })
     }

@@ -6,8 +6,9 @@ use fieldproof_can::Frame;
 use fieldproof_link::Instant;
 
 use super::objects::Objects;
+use super::pdo_rules::is_transmit;
 use super::queue::Service;
-use super::{Address, Application, Slave};
+use super::{Address, Application, Behaviour, Slave};
 
 pub(super) const RPDO_COMMUNICATION: u16 = 0x1400;
 pub(super) const RPDO_MAPPING: u16 = 0x1600;
@@ -42,17 +43,22 @@ impl Communication {
     /// | 2 | transmission type |
     /// | 3 | inhibit time, 100 us |
     /// | 5 | event timer, ms |
-    pub(super) fn read(objects: &Objects, index: u16) -> Option<Communication> {
+    pub(super) fn read(
+        objects: &Objects,
+        index: u16,
+        behaviour: &Behaviour,
+    ) -> Option<Communication> {
         let number = |sub| objects.number(Address::new(index, sub));
         let cob_id = number(1)?;
         let [identifier_low, identifier_high, ..] = cob_id.to_le_bytes();
         Some(Communication {
-            valid: cob_id & INVALID == 0,
+            valid: cob_id & INVALID == 0 || (behaviour.invalid_tpdo_sent && is_transmit(index)),
             remote: cob_id & NO_REMOTE == 0,
             identifier: u16::from_le_bytes([identifier_low, identifier_high]) & 0x7FF,
             kind: number(2)?.to_le_bytes()[0],
             inhibit: Duration::from_micros(u64::from(number(3).unwrap_or(0)) * 100),
-            event_timer: Duration::from_millis(u64::from(number(5).unwrap_or(0))),
+            event_timer: Duration::from_millis(u64::from(number(5).unwrap_or(0)))
+                * behaviour.event_timer_unit_ms,
         })
     }
 
@@ -121,10 +127,10 @@ pub(super) struct Rpdo {
 }
 
 /// The RPDOs that the dictionary describes.
-pub(super) fn rpdos(objects: &Objects) -> Vec<Rpdo> {
+pub(super) fn rpdos(objects: &Objects, behaviour: &Behaviour) -> Vec<Rpdo> {
     let rpdo = |number| {
         Some(Rpdo {
-            communication: Communication::read(objects, RPDO_COMMUNICATION + number)?,
+            communication: Communication::read(objects, RPDO_COMMUNICATION + number, behaviour)?,
             fields: fields(objects, RPDO_MAPPING + number),
             latched: None,
         })

@@ -77,7 +77,8 @@ impl Slave {
                 self.sdo.transfer = Transfer::None;
                 Ok(())
             }
-            _ => Err((address, Abort::UNKNOWN_COMMAND)),
+            _ if self.behaviour.unknown_command_refused => Err((address, Abort::UNKNOWN_COMMAND)),
+            _ => Ok(()),
         };
         if let Err((address, abort)) = outcome {
             self.abort(now, address, abort);
@@ -119,8 +120,10 @@ impl Slave {
             data.iter_mut()
                 .zip(value)
                 .for_each(|(to, from)| *to = *from);
-            if self.behaviour.mapping_entry_big_endian && is_mapping_entry(address) {
-                data.reverse();
+            let reversed = self.behaviour.upload_big_endian
+                || (self.behaviour.mapping_entry_big_endian && is_mapping_entry(address));
+            if let Some(number) = data.get_mut(..value.len()).filter(|_| reversed) {
+                number.reverse();
             }
             let size = (value.len() + usize::from(self.behaviour.expedited_surplus)).min(4);
             *command = 0x43 | ((4 - size) << 2).to_le_bytes()[0];

@@ -24,6 +24,7 @@ const ALL: std::ops::RangeInclusive<u16> = 0x0000..=0xFFFF;
 const COMMUNICATION: std::ops::RangeInclusive<u16> = 0x1000..=0x1FFF;
 const ERROR_HISTORY: u16 = 0x1003;
 const STORE: u16 = 0x1010;
+const IDENTITY: u16 = 0x1018;
 const RESTORE: u16 = 0x1011;
 /// The node-ID of a slave that has none yet.
 const NO_NODE: u8 = 255;
@@ -128,7 +129,7 @@ impl Slave {
         } else if raw == 0x600 + node {
             self.serve(now, frame, application);
         } else if raw == 0 {
-            if let Some(command) = Command::of(frame, self.node) {
+            if let Some(command) = Command::of(frame, self.node, &self.behaviour) {
                 self.command(now, command, application);
             }
         } else if raw == 0x700 + node && frame.is_remote() {
@@ -257,6 +258,10 @@ impl Slave {
 
     fn initialise(&mut self, now: Instant) {
         self.show_configuration();
+        for (sub, number) in (1..).zip(self.behaviour.identity.into_iter().flatten()) {
+            let address = Address::new(IDENTITY, sub);
+            self.objects.set_number(address, i64::from(number));
+        }
         for (first, second) in self.profile.twins {
             if let Some(number) = self.objects.number(*first) {
                 self.objects.set_number(*second, i64::from(number));
@@ -268,8 +273,8 @@ impl Slave {
         self.sdo = Server::default();
         self.sync = Sync::default();
         self.error_control = ErrorControl::default();
-        self.rpdos = pdo::rpdos(&self.objects);
-        self.tpdos = tpdo::tpdos(&self.objects);
+        self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
+        self.tpdos = tpdo::tpdos(&self.objects, &self.behaviour);
         self.boot_at = self.has_node().then(|| now + self.profile.boot_time);
     }
 
@@ -310,8 +315,8 @@ impl Slave {
     pub(super) fn take_node(&mut self, node: u8) {
         self.objects.readdress(self.node, node);
         self.node = node;
-        self.rpdos = pdo::rpdos(&self.objects);
-        self.tpdos = tpdo::tpdos(&self.objects);
+        self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
+        self.tpdos = tpdo::tpdos(&self.objects, &self.behaviour);
     }
 
     /// A switch or a front panel sets the node-ID.
@@ -467,7 +472,7 @@ impl Slave {
             if pdo_rules::is_transmit(index) {
                 self.reconfigure_tpdo(now, index);
             } else {
-                self.rpdos = pdo::rpdos(&self.objects);
+                self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
             }
         } else if address == sync::COB_ID || address == sync::CYCLE {
             self.reconfigure_sync(now);

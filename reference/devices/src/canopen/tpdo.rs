@@ -6,7 +6,7 @@ use fieldproof_link::Instant;
 use super::objects::Objects;
 use super::pdo::{Communication, Field, MOST_PDOS, TPDO_COMMUNICATION, TPDO_MAPPING, fields};
 use super::queue::{Service, identifier};
-use super::{Slave, TransmitEvent};
+use super::{Behaviour, Slave, TransmitEvent};
 
 /// What a PDO carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,6 +27,8 @@ pub(super) struct Tpdo {
     event: bool,
     /// SYNCs since it was last sent.
     syncs: u8,
+    /// Its numbers leave with the most significant byte first.
+    big_endian: bool,
     /// It was due with the SYNC before.
     owed: bool,
     last: Option<Instant>,
@@ -34,15 +36,16 @@ pub(super) struct Tpdo {
 }
 
 impl Tpdo {
-    fn read(objects: &Objects, number: u16) -> Option<Tpdo> {
+    fn read(objects: &Objects, number: u16, behaviour: &Behaviour) -> Option<Tpdo> {
         let index = TPDO_COMMUNICATION + number;
         Some(Tpdo {
             index,
-            communication: Communication::read(objects, index)?,
+            communication: Communication::read(objects, index, behaviour)?,
             fields: fields(objects, TPDO_MAPPING + number),
             sampled: Payload::default(),
             event: false,
             syncs: 0,
+            big_endian: behaviour.tpdo_big_endian,
             owed: false,
             last: None,
             timer: None,
@@ -63,6 +66,9 @@ impl Tpdo {
                 .iter_mut()
                 .zip(value)
                 .for_each(|(to, from)| *to = *from);
+            if self.big_endian {
+                place.reverse();
+            }
             payload.len = end;
         }
         payload
@@ -86,9 +92,9 @@ impl Tpdo {
 }
 
 /// The TPDOs that the dictionary describes.
-pub(super) fn tpdos(objects: &Objects) -> Vec<Tpdo> {
+pub(super) fn tpdos(objects: &Objects, behaviour: &Behaviour) -> Vec<Tpdo> {
     (0..MOST_PDOS)
-        .filter_map(|number| Tpdo::read(objects, number))
+        .filter_map(|number| Tpdo::read(objects, number, behaviour))
         .collect()
 }
 
@@ -96,7 +102,7 @@ impl Slave {
     /// Reads the parameters of the TPDO whose communication or mapping parameter is `index` again.
     pub(super) fn reconfigure_tpdo(&mut self, now: Instant, index: u16) {
         let number = index % TPDO_MAPPING % TPDO_COMMUNICATION;
-        let Some(fresh) = Tpdo::read(&self.objects, number) else {
+        let Some(fresh) = Tpdo::read(&self.objects, number, &self.behaviour) else {
             return;
         };
         let active = self.state.permits(Service::Pdo, &self.behaviour);
@@ -149,6 +155,7 @@ impl Slave {
     pub(super) fn synchronise_tpdos(&mut self, now: Instant) {
         for number in 0..self.tpdos.len() {
             let late = self.behaviour.tpdo_one_sync_late;
+            let surplus = self.behaviour.surplus_syncs;
             let Some(tpdo) = self.tpdos.get_mut(number) else {
                 return;
             };
@@ -160,7 +167,7 @@ impl Slave {
             let due = if kind == 0 {
                 tpdo.event
             } else {
-                tpdo.syncs >= kind
+                tpdo.syncs >= kind.saturating_add(surplus)
             };
             if due {
                 tpdo.syncs = 0;

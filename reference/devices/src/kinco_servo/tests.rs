@@ -1,6 +1,6 @@
 use super::KIND;
+use crate::Settings;
 use crate::script::{Script, conforms, departs};
-use crate::{Settings, Variant};
 use std::time::Duration;
 
 const SDO: &str = "
@@ -601,21 +601,164 @@ fn fault_in_mapping_entry() {
 }
 
 #[test]
-fn every_variant_and_fault_is_built_and_no_other() {
-    for name in KIND.variants.iter().map(|Variant { name, .. }| *name) {
-        let settings = Settings {
-            variant: Some(name.to_owned()),
-            ..Settings::default()
-        };
-        assert!((KIND.build)(&settings).is_ok(), "{name}");
-    }
-    let settings = Settings {
-        fault: Some("no-such-fault".to_owned()),
-        ..Settings::default()
-    };
-    let error = (KIND.build)(&settings).err().unwrap();
-    assert_eq!(
-        error.to_string(),
-        "kinco-servo has no behaviour `no-such-fault`"
+fn fault_in_ending_the_heartbeat() {
+    departs(
+        &KIND,
+        "heartbeat-not-stopped",
+        "
+        wait 10 ms
+        < 701#00
+        > 601#2B1710000A000000
+        < 581#601710000A000000
+        wait 10 ms
+        < 701#7F
+        > 601#2B17100000000000
+        < 581#6017100000000000
+        wait 10 ms
+        ",
+        &[
+            ("wait 10 ms", "wait 10 ms"),
+            ("wait 10 ms", "wait 10 ms"),
+            ("wait 10 ms", "wait 10 ms\n< 701#7F"),
+        ],
+    );
+}
+
+const NMT_ADDRESSES: &str = "
+    wait 10 ms
+    < 701#00
+    > 000#0102
+    > 701#R
+    < 701#7F
+    > 000#0100
+    < 181#000000003102
+    > 701#R
+    < 701#85
+    > 000#5501
+    > 701#R
+    < 701#05
+";
+
+#[test]
+fn faults_in_nmt_commands() {
+    departs(
+        &KIND,
+        "nmt-to-all-ignored",
+        NMT_ADDRESSES,
+        &[
+            ("< 181#000000003102", ""),
+            ("< 701#85", "< 701#FF"),
+            ("< 701#05", "< 701#7F"),
+        ],
+    );
+    departs(
+        &KIND,
+        "nmt-to-another-obeyed",
+        NMT_ADDRESSES,
+        &[
+            ("> 000#0102", "> 000#0102\n< 181#000000003102"),
+            ("< 701#7F", "< 701#05"),
+            ("< 181#000000003102", ""),
+        ],
+    );
+    departs(
+        &KIND,
+        "unknown-nmt-command-stops",
+        NMT_ADDRESSES,
+        &[("< 701#05", "< 701#04")],
+    );
+    departs(
+        &KIND,
+        "guarding-toggle-stuck",
+        NMT_ADDRESSES,
+        &[("< 701#85", "< 701#05")],
+    );
+}
+
+#[test]
+fn fault_in_unknown_commands() {
+    departs(
+        &KIND,
+        "unknown-command-ignored",
+        ABORTS,
+        &[
+            ("< 581#8000000001000405", ""),
+            ("< 581#8041600201000405", ""),
+        ],
+    );
+}
+
+#[test]
+fn fault_in_byte_order_of_uploads() {
+    departs(
+        &KIND,
+        "upload-byte-order",
+        SDO,
+        &[
+            ("< 581#4363600013D1FFFF", "< 581#43636000FFFFD113"),
+            ("< 581#4B41600031020000", "< 581#4B41600002310000"),
+            ("< 581#4B4060000F000000", "< 581#4B406000000F0000"),
+        ],
+    );
+}
+
+#[test]
+fn fault_in_counting_sync() {
+    departs(
+        &KIND,
+        "sync-counted-wrong",
+        "
+        wait 10 ms
+        < 701#00
+        > 601#2F00180201000000
+        < 581#6000180201000000
+        > 000#0101
+        > 080#
+        < 181#000000003102
+        > 080#
+        < 181#000000003102
+        ",
+        &[("< 181#000000003102", "")],
+    );
+}
+
+#[test]
+fn fault_in_invalid_pdos() {
+    departs(
+        &KIND,
+        "invalid-tpdo-sent",
+        "
+        wait 10 ms
+        < 701#00
+        > 601#2300180181010080
+        < 581#6000180181010080
+        > 601#2F01180201000000
+        < 581#6001180201000000
+        > 000#0101
+        > 080#
+        ",
+        &[
+            (
+                "> 000#0101",
+                "> 000#0101\n< 181#000000003102\n< 381#\n< 481#",
+            ),
+            ("> 080#", "> 080#\n< 281#"),
+        ],
+    );
+}
+
+#[test]
+fn fault_in_byte_order_of_pdos() {
+    departs(
+        &KIND,
+        "tpdo-byte-order",
+        "
+        wait 10 ms
+        < 701#00
+        set 6063:00 = -12013
+        > 000#0101
+        < 181#13D1FFFF3102
+        ",
+        &[("< 181#13D1FFFF3102", "< 181#FFFFD1130231")],
     );
 }

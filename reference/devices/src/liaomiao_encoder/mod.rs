@@ -60,8 +60,22 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         faults::SDO_ANSWERED_IN_STOPPED,
         faults::PDO_IN_PRE_OPERATIONAL,
         faults::DOWNLOAD_ACK_MISSING,
+        faults::HEARTBEAT_NOT_STOPPED,
+        faults::NMT_TO_ALL_IGNORED,
+        faults::NMT_TO_ANOTHER_OBEYED,
+        faults::UNKNOWN_NMT_COMMAND_STOPS,
+        faults::UNKNOWN_COMMAND_IGNORED,
+        faults::UPLOAD_BYTE_ORDER,
+        faults::SYNC_COUNTED_WRONG,
+        faults::INVALID_TPDO_SENT,
+        faults::TPDO_BYTE_ORDER,
+        faults::GUARDING_TOGGLE_STUCK,
+        faults::EVENT_TIMER_UNIT,
+        faults::LSS_STORE_FORGETS,
+        faults::LSS_SERIAL_IGNORED,
         faults::LSS_REVISION_ANSWERS_5B,
         faults::NODE_ID_ACTIVE_BEFORE_RESET,
+        IDENTITY_OF_THE_TEMPLATE,
         SPEED_SIGN_LOST,
         modbus::faults::SPEED_SIGN_LOST,
         modbus::faults::CRC_BYTES_SWAPPED,
@@ -70,6 +84,8 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         modbus::faults::EXCEPTION_03_FOR_02,
         modbus::faults::REPLY_TOO_EARLY,
         modbus::faults::BROADCAST_ANSWERED,
+        modbus::faults::OTHER_ADDRESS_ANSWERED,
+        modbus::faults::BARE_ADDRESS_ANSWERED,
         modbus::faults::WRONG_BYTE_COUNT,
         modbus::faults::WRITE_ECHO_WRONG_VALUE,
         modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
@@ -94,6 +110,14 @@ const SPEED_SIGN_LOST: Fault = Fault {
     words: "shows the magnitude of the speed in 2000h and in both TPDOs",
     caught_by: "pdo",
     apply: |behaviour| behaviour.speed_sign_on_can = SpeedSign::Lost,
+};
+
+const IDENTITY_OF_THE_TEMPLATE: Fault = Fault {
+    name: "identity-of-the-template",
+    breaks: "CiA 301: object 1018h, the vendor-ID is the one CiA gave; Liaomiao encoder manual, section 6",
+    words: "has left in 1018h what a template had: vendor 0, product 0, revision 1, serial number 1",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.identity = Some([0, 0, 1, 1]),
 };
 
 /// What the manual documents.

@@ -398,6 +398,8 @@ fn faults_of_the_serial_line() {
         >> 20 03 00 05 00 01 92 BB
         >> 20 03 01 00 00 01 83 47
         << 20 83 02 90 FB
+        >> 21 03 00 05 00 01 93 6B
+        >> 20 BE 98
         >> FF 10 00 01 00 03 06 61 64 64 72 3A 03 75 09
         << 03 10 00 01 00 03 D0 2A
     ";
@@ -405,6 +407,10 @@ fn faults_of_the_serial_line() {
     let stale = ">> 20 03 00 05 00 01 92 BB";
     let answered = ">> 20 03 00 05 00 01 92 BB\n<< 20 03 02 25 80 1F 73";
     let exception = "<< 20 83 02 90 FB";
+    let other = ">> 21 03 00 05 00 01 93 6B";
+    let answered_for_it = ">> 21 03 00 05 00 01 93 6B\n<< 20 03 02 25 80 1F 73";
+    let bare = ">> 20 BE 98";
+    let answered_to_it = ">> 20 BE 98\n<< 20 80 01 D0 0A";
     let change = "<< 03 10 00 01 00 03 D0 2A";
     for (fault, changes) in [
         (
@@ -416,9 +422,91 @@ fn faults_of_the_serial_line() {
             ][..],
         ),
         ("stale-crc-accepted", &[(stale, answered)]),
+        ("other-address-answered", &[(other, answered_for_it)]),
+        ("bare-address-answered", &[(bare, answered_to_it)]),
         ("exception-without-80h", &[(exception, "<< 20 03 02 F1 3B")]),
         ("address-change-not-answered", &[(change, "")]),
     ] {
         departs(&KIND, fault, READ, changes);
     }
+}
+
+#[test]
+fn fault_in_event_timer() {
+    departs(
+        &KIND,
+        "event-timer-unit",
+        "
+        wait 20 ms
+        < 720#00
+        > 000#0120
+        wait 100 ms
+        < 1A0#0000000000000000
+        wait 900 ms
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        < 1A0#0000000000000000
+        ",
+        &[("< 1A0#0000000000000000", ""); 9],
+    );
+}
+
+#[test]
+fn fault_in_storing() {
+    departs(
+        &KIND,
+        "lss-store-forgets",
+        LSS,
+        &[
+            ("< 5A0#4F00300005000000", "< 5A0#4F00300020000000"),
+            ("< 705#00", "< 720#00"),
+        ],
+    );
+}
+
+#[test]
+fn fault_in_selecting() {
+    departs(
+        &KIND,
+        "lss-serial-ignored",
+        "
+        wait 20 ms
+        < 720#00
+        > 7E5#403C060000000000
+        > 7E5#4101000000000000
+        > 7E5#4201000000000000
+        > 7E5#43B9615D0E000000
+        > 7E5#5A00000000000000
+        ",
+        &[
+            (
+                "> 7E5#43B9615D0E000000",
+                "> 7E5#43B9615D0E000000\n< 7E4#4400000000000000",
+            ),
+            (
+                "> 7E5#5A00000000000000",
+                "> 7E5#5A00000000000000\n< 7E4#5A3C060000000000",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn fault_in_identity() {
+    departs(
+        &KIND,
+        "identity-of-the-template",
+        LSS,
+        &[
+            ("< 7E4#5A3C060000000000", "< 7E4#5A00000000000000"),
+            ("< 7E4#5B01000000000000", "< 7E4#5B00000000000000"),
+            ("< 7E4#5DB8615D0E000000", "< 7E4#5D01000000000000"),
+        ],
+    );
 }

@@ -102,6 +102,10 @@ pub struct Behaviour {
     pub replies_before_silence: bool,
     /// Whether a request to address 0 is answered.
     pub broadcast_answered: bool,
+    /// Whether a request to another address is answered.
+    pub other_addresses_answered: bool,
+    /// Whether an address and a CRC, with no function between them, are answered.
+    pub bare_address_answered: bool,
     /// What the byte count of an answer to 03h counts.
     pub byte_count: ByteCount,
     /// Which value the answer to 06h names.
@@ -122,6 +126,8 @@ impl Behaviour {
         exception_bit_set: true,
         replies_before_silence: false,
         broadcast_answered: false,
+        other_addresses_answered: false,
+        bare_address_answered: false,
         byte_count: ByteCount::Bytes,
         echoed_value: EchoedValue::Written,
         speed_sign: SpeedSign::Kept,

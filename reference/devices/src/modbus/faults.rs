@@ -69,6 +69,24 @@ pub const BROADCAST_ANSWERED: Fault = Fault {
     apply: |behaviour| behaviour.modbus.broadcast_answered = true,
 };
 
+/// An answer to a request that is meant for another.
+pub const OTHER_ADDRESS_ANSWERED: Fault = Fault {
+    name: "other-address-answered",
+    breaks: "MODBUS over serial line V1.02, 2.2: only the slave that is addressed answers",
+    words: "does and answers, from its own address, what another slave is asked",
+    caught_by: "modbus",
+    apply: |behaviour| behaviour.modbus.other_addresses_answered = true,
+};
+
+/// An answer to something that is no request.
+pub const BARE_ADDRESS_ANSWERED: Fault = Fault {
+    name: "bare-address-answered",
+    breaks: "MODBUS over serial line V1.02, 2.5.1: a frame has an address, a function code, data and a CRC",
+    words: "answers a frame that has an address and a CRC, but no function code",
+    caught_by: "modbus",
+    apply: |behaviour| behaviour.modbus.bare_address_answered = true,
+};
+
 /// A length that is not one.
 pub const WRONG_BYTE_COUNT: Fault = Fault {
     name: "wrong-byte-count",
@@ -122,6 +140,8 @@ pub const FAULTS: &[Fault] = &[
     EXCEPTION_03_FOR_02,
     REPLY_TOO_EARLY,
     BROADCAST_ANSWERED,
+    OTHER_ADDRESS_ANSWERED,
+    BARE_ADDRESS_ANSWERED,
     WRONG_BYTE_COUNT,
     WRITE_ECHO_WRONG_VALUE,
     ADDRESS_CHANGE_NOT_ANSWERED,

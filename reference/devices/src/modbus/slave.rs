@@ -209,11 +209,16 @@ impl<R: Registers> ModbusSlave<R> {
     /// The answer to a request on the own address or to all, without its CRC.
     fn ordinary_answer(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let (&address, pdu) = request.split_first()?;
-        let (&function, data) = pdu.split_first()?;
         let own_address = self.registers.address();
-        if address != BROADCAST && address != own_address {
+        let others = self.behaviour.other_addresses_answered;
+        if address != BROADCAST && address != own_address && !others {
             return None;
         }
+        let (function, data) = match pdu.split_first() {
+            Some((&function, data)) => (function, data),
+            None if self.behaviour.bare_address_answered => (0, pdu),
+            None => return None,
+        };
         let outcome = self.execute(function, data);
         if address == BROADCAST && !self.behaviour.broadcast_answered {
             return None;
