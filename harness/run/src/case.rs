@@ -74,9 +74,11 @@ impl Tester<'_> {
         place: &dyn Fn(Position) -> Place,
     ) -> CaseOutcome {
         self.session.begin_case();
+        self.watch.begin_case();
         self.saved.clear();
         self.notes.clear();
         self.restores_by_steps = !case.restore.steps.is_empty();
+        self.steps_begun = false;
         let mut findings = Findings::default();
 
         if let Err(stop) = self.prepare(case) {
@@ -160,6 +162,7 @@ impl Tester<'_> {
             if !findings.may_go_on() {
                 return;
             }
+            self.steps_begun |= part == Part::Steps;
             let at_ns = self.session.now().as_nanos();
             let step_number = (first + number) as u32;
             self.session.emit(Event::StepStarted(StepStarted {
@@ -231,6 +234,13 @@ impl Tester<'_> {
                 None => (Verdict::Fail, *mismatch),
             },
             Stop::Undecided(mismatch) => (Verdict::Inconclusive, *mismatch),
+            Stop::NotSaved(name) => (
+                Verdict::Error,
+                Mismatch {
+                    what: format!("no step saved {name:?}"),
+                    ..Mismatch::default()
+                },
+            ),
             Stop::Bench(what) => (
                 Verdict::Error,
                 Mismatch {
@@ -270,6 +280,10 @@ impl Tester<'_> {
     fn find_not_put_back(&mut self, findings: &mut Findings, stop: Stop, place: Place) {
         let mismatch = match stop {
             Stop::Mismatch(mismatch) | Stop::Undecided(mismatch) => *mismatch,
+            Stop::NotSaved(name) => Mismatch {
+                what: format!("no step saved {name:?}"),
+                ..Mismatch::default()
+            },
             Stop::Bench(what) => Mismatch {
                 what,
                 ..Mismatch::default()

@@ -137,6 +137,7 @@ impl<'a> Player<'a> {
             main_role: crate::tester::CAN,
             sync_producer: None,
             restores_by_steps: false,
+            steps_begun: false,
             strict: job.strict,
             watch: NodeWatch::new(heartbeat_by_default),
             saved: Saved::new(),
@@ -187,7 +188,8 @@ impl<'a> Player<'a> {
             }
         }
         tester.session.begin_case();
-        tester.watch.state = Some(NmtState::PreOperational);
+        let now = tester.session.now();
+        tester.watch.found(NmtState::PreOperational, now);
         self.as_found = Some(NmtState::PreOperational);
     }
 

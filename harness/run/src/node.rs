@@ -12,16 +12,15 @@ use fieldproof_wire::canopen::{NodeId, Service, cob_id};
 /// What is known of the node.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeWatch {
-    /// The state it must be in by what it was told; unknown until it was found.
-    pub(crate) state: Option<NmtState>,
-    /// The state before the last command: right until the transition time is over.
-    before: Option<NmtState>,
-    /// When the last command was sent.
-    commanded_at: Instant,
+    /// The states it was told to be in, each with the instant from which it should; the last one is the present one.
+    /// Empty until it was found.
+    states: Vec<(Instant, NmtState)>,
     /// Whether it was reset and its boot-up has not been seen yet.
     pub(crate) boot_up_due: bool,
     /// Whether it produces heartbeats, by its default and by what was written to 1017h since.
     pub(crate) heartbeat: bool,
+    /// When it was last told not to, if it was.
+    heartbeat_ended_at: Option<Instant>,
     /// The period that was written to 1017h, if one was.
     pub(crate) heartbeat_period: Option<Duration>,
     /// What 1017h holds after a reset.
@@ -31,14 +30,29 @@ pub(crate) struct NodeWatch {
 impl NodeWatch {
     pub(crate) fn new(heartbeat_by_default: bool) -> NodeWatch {
         NodeWatch {
-            state: None,
-            before: None,
-            commanded_at: Instant::START,
+            states: Vec::new(),
             boot_up_due: false,
             heartbeat: heartbeat_by_default,
+            heartbeat_ended_at: None,
             heartbeat_period: None,
             heartbeat_by_default,
         }
+    }
+
+    /// The state it must be in by what it was told.
+    pub(crate) fn state(&self) -> Option<NmtState> {
+        self.states.last().map(|(_, state)| *state)
+    }
+
+    /// It was found in a state.
+    pub(crate) fn found(&mut self, state: NmtState, at: Instant) {
+        self.states = vec![(at, state)];
+    }
+
+    /// A case begins: what was before the present state matters no more.
+    pub(crate) fn begin_case(&mut self) {
+        self.states.drain(..self.states.len().saturating_sub(1));
+        self.heartbeat_ended_at = None;
     }
 
     /// Follows a frame of the tester.
@@ -53,23 +67,42 @@ impl NodeWatch {
                 self.commanded(message.command, at);
             }
         } else if id == cob_id(Service::SdoRequest, Some(node)) {
-            self.written(frame);
+            self.written(frame, at);
         }
     }
 
     /// It has booted: it is pre-operational, and forgets what was only in its memory.
-    pub(crate) fn booted(&mut self) {
-        self.state = Some(NmtState::PreOperational);
-        self.before = None;
+    pub(crate) fn booted(&mut self, at: Instant) {
+        self.states.push((at, NmtState::PreOperational));
         self.boot_up_due = false;
-        self.heartbeat = self.heartbeat_by_default;
-        self.heartbeat_period = None;
+        self.set_heartbeat(self.heartbeat_by_default, None, at);
     }
 
-    /// Whether `state`, seen at `at`, is right by what the node was told.
+    /// Whether `state`, seen at `at`, is right by what the node had been told by then. Each new state may take
+    /// `transition` to come about.
     pub(crate) fn agrees(&self, state: NmtState, at: Instant, transition: Duration) -> bool {
-        self.state.is_none_or(|expected| expected == state)
-            || (self.before == Some(state) && at <= self.commanded_at + transition)
+        let told_by_then = self
+            .states
+            .iter()
+            .take_while(|(since, _)| *since <= at)
+            .count();
+        let in_force = told_by_then.saturating_sub(1);
+        let still_right = |index: usize| {
+            index == in_force
+                || self
+                    .states
+                    .get(index + 1)
+                    .is_some_and(|(ended, _)| at <= *ended + transition)
+        };
+        self.states.is_empty()
+            || (0..=in_force).any(|index| {
+                self.states.get(index).is_some_and(|(_, s)| *s == state) && still_right(index)
+            })
+    }
+
+    /// Whether a heartbeat at `at` is in order: they are on, or were until just before.
+    pub(crate) fn had_heartbeat(&self, at: Instant) -> bool {
+        self.heartbeat || self.heartbeat_ended_at.is_some_and(|ended| at <= ended)
     }
 
     fn commanded(&mut self, command: Command, at: Instant) {
@@ -79,16 +112,15 @@ impl NodeWatch {
             Command::EnterPreOperational => NmtState::PreOperational,
             Command::ResetNode | Command::ResetCommunication => {
                 self.boot_up_due = true;
+                self.set_heartbeat(self.heartbeat_by_default, None, at);
                 NmtState::PreOperational
             }
             Command::Unknown(_) => return,
         };
-        self.before = self.state;
-        self.state = Some(next);
-        self.commanded_at = at;
+        self.states.push((at, next));
     }
 
-    fn written(&mut self, frame: &Frame) {
+    fn written(&mut self, frame: &Frame, at: Instant) {
         if let Ok(Request::InitiateDownload {
             object,
             transfer: Transfer::Expedited(data),
@@ -100,8 +132,75 @@ impl NodeWatch {
                 .iter()
                 .rev()
                 .fold(0, |value, byte| value << 8 | u64::from(*byte));
-            self.heartbeat = milliseconds != 0;
-            self.heartbeat_period = self.heartbeat.then(|| Duration::from_millis(milliseconds));
+            let period = (milliseconds != 0).then(|| Duration::from_millis(milliseconds));
+            // The last one may be on its way while the write is.
+            self.set_heartbeat(period.is_some(), period, at + GRACE);
         }
+    }
+
+    fn set_heartbeat(&mut self, on: bool, period: Option<Duration>, at: Instant) {
+        if self.heartbeat && !on {
+            self.heartbeat_ended_at = Some(at);
+        }
+        self.heartbeat = on;
+        self.heartbeat_period = period;
+    }
+}
+
+/// How long after the request that ends them a heartbeat may still come.
+const GRACE: Duration = Duration::from_millis(10);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRANSITION: Duration = Duration::from_millis(10);
+
+    fn ms(milliseconds: u64) -> Instant {
+        Instant::from_nanos(milliseconds * 1_000_000)
+    }
+
+    fn watch() -> NodeWatch {
+        let mut watch = NodeWatch::new(true);
+        watch.found(NmtState::PreOperational, ms(0));
+        watch.commanded(Command::Start, ms(100));
+        watch.commanded(Command::Stop, ms(200));
+        watch
+    }
+
+    #[test]
+    fn a_state_is_judged_by_what_the_node_had_been_told_when_it_was_seen() {
+        let watch = watch();
+        assert!(watch.agrees(NmtState::PreOperational, ms(50), TRANSITION));
+        assert!(watch.agrees(NmtState::Operational, ms(150), TRANSITION));
+        assert!(watch.agrees(NmtState::Stopped, ms(250), TRANSITION));
+        assert!(!watch.agrees(NmtState::Operational, ms(50), TRANSITION));
+        assert!(!watch.agrees(NmtState::PreOperational, ms(150), TRANSITION));
+        assert!(!watch.agrees(NmtState::Operational, ms(250), TRANSITION));
+    }
+
+    #[test]
+    fn the_state_before_is_right_until_the_transition_is_over() {
+        let watch = watch();
+        assert!(watch.agrees(NmtState::Operational, ms(209), TRANSITION));
+        assert!(!watch.agrees(NmtState::Operational, ms(211), TRANSITION));
+        assert!(!watch.agrees(NmtState::PreOperational, ms(209), TRANSITION));
+    }
+
+    #[test]
+    fn heartbeats_end_with_a_reset_and_with_a_write_of_zero() {
+        let mut watch = NodeWatch::new(false);
+        let node = NodeId::new(1);
+        let write = |text: &str| text.parse::<Frame>().expect("a frame");
+        watch.sent(&write("601#2B1710000A000000"), ms(10), node);
+        assert_eq!(watch.heartbeat_period, Some(Duration::from_millis(10)));
+        watch.sent(&write("601#2B17100000000000"), ms(100), node);
+        assert!(watch.had_heartbeat(ms(105)));
+        assert!(!watch.had_heartbeat(ms(120)));
+        watch.sent(&write("601#2B1710000A000000"), ms(200), node);
+        watch.sent(&write("000#8201"), ms(300), node);
+        assert!(watch.boot_up_due);
+        assert!(watch.had_heartbeat(ms(299)));
+        assert!(!watch.had_heartbeat(ms(310)));
     }
 }

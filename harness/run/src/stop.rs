@@ -13,6 +13,8 @@ pub(crate) enum Stop {
     Undecided(Box<Mismatch>),
     /// The bench or the suite is at fault.
     Bench(String),
+    /// A step uses a value that no step before it saved.
+    NotSaved(String),
     /// The link failed.
     Link(LinkError),
     /// The user wants to stop.

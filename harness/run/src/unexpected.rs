@@ -118,7 +118,7 @@ pub(crate) fn is_proper_heartbeat(
         _ => return false,
     };
     debug_assert_eq!(wire_state(state).code(), frame.bytes()[0]);
-    from == node && watch.heartbeat && watch.agrees(state, at, transition)
+    from == node && watch.had_heartbeat(at) && watch.agrees(state, at, transition)
 }
 
 fn unexpected(kind: &str, came: &str, what: Came) -> Stop {

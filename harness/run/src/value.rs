@@ -149,7 +149,7 @@ pub(crate) fn register(number: &Number, saved: &Saved) -> Result<u16, Stop> {
 fn lookup<'s>(name: &str, saved: &'s Saved) -> Result<&'s Actual, Stop> {
     saved
         .get(name)
-        .ok_or_else(|| Stop::Bench(format!("no step saved {name:?}")))
+        .ok_or_else(|| Stop::NotSaved(name.to_owned()))
 }
 
 /// Whether the bytes of a frame mean what the suite says; else what they mean.

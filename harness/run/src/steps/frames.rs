@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fieldproof_can::{Frame, Id, Pattern};
-use fieldproof_link::{Origin, PortIndex};
+use fieldproof_link::{Instant, Origin, PortIndex};
 use fieldproof_suite::model::{Expect, ExpectSilence, Send};
 use fieldproof_wire::canopen::{Service, identify};
 use fieldproof_wire::describe::describe_frame;
@@ -39,17 +39,17 @@ impl Tester<'_> {
             }
             check_decode(rule, frame.bytes())?;
         }
-        self.follow_received(&frame);
+        self.follow_received(&frame, received.at);
         Ok(())
     }
 
     /// What an expected frame tells of the node: a boot-up means that it is pre-operational.
-    fn follow_received(&mut self, frame: &Frame) {
+    fn follow_received(&mut self, frame: &Frame, at: Instant) {
         if let Some(Some((Service::ErrorControl, Some(node)))) = frame.standard_id().map(identify)
             && frame.bytes() == [0]
         {
             self.node = Some(node);
-            self.watch.booted();
+            self.watch.booted(at);
         }
     }
 

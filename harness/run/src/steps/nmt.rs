@@ -224,7 +224,7 @@ impl Tester<'_> {
         }
         self.measure_response("boot-up time", &received, within)?;
         self.node = Some(node);
-        self.watch.booted();
+        self.watch.booted(received.at);
         Ok(())
     }
 

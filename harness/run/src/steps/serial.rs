@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use fieldproof_can::BytePattern;
 use fieldproof_suite::model::{Crc, ExpectBytes, SendBytes};
 use fieldproof_wire::modbus::crc16_bytes;
 
@@ -53,6 +54,7 @@ impl Tester<'_> {
         if spoilt || !expected.matches(&bytes) {
             return Err(wrong_bytes(step, &bytes, spoilt));
         }
+        check_open_crc(expected, &bytes)?;
         if role == SERIAL {
             self.judge_reply_time(port, &received, within)?;
         }
@@ -92,6 +94,25 @@ fn wrong_bytes(step: &ExpectBytes, bytes: &[u8], spoilt: bool) -> Stop {
     stop.with_note(format!("bytes that differ: {}", differing.join(", ")))
 }
 
+/// Where the pattern leaves the last two bytes open they are still a CRC, and it must be right.
+fn check_open_crc(expected: &BytePattern, bytes: &[u8]) -> Result<(), Stop> {
+    let is_open =
+        matches!(expected.bytes(), [.., low, high] if low.mask() == 0 && high.mask() == 0);
+    let Some((body, crc)) = bytes.split_last_chunk::<2>().filter(|_| is_open) else {
+        return Ok(());
+    };
+    let right = crc16_bytes(body);
+    if *crc == right {
+        return Ok(());
+    }
+    Err(Stop::mismatch(
+        "the CRC of the frame is wrong",
+        show_bytes(&right),
+        show_bytes(crc),
+        Came::Answer,
+    ))
+}
+
 fn with_crc(bytes: &[u8], crc: Crc) -> Result<Vec<u8>, Stop> {
     let mut whole = bytes.to_vec();
     let [low, high] = crc16_bytes(bytes);
@@ -113,6 +134,15 @@ fn with_crc(bytes: &[u8], crc: Crc) -> Result<Vec<u8>, Stop> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_crc_that_the_pattern_leaves_open_must_be_right() {
+        let open: BytePattern = "20 03 02 ?? ?? ?? ??".parse().expect("a pattern");
+        assert!(check_open_crc(&open, &[0x20, 0x03, 0x02, 0x0F, 0xB4, 0x01, 0xC4]).is_ok());
+        assert!(check_open_crc(&open, &[0x20, 0x03, 0x02, 0x0F, 0xB4, 0xC4, 0x01]).is_err());
+        let given: BytePattern = "20 03 02 ?? ?? 00 00".parse().expect("a pattern");
+        assert!(check_open_crc(&given, &[0x20, 0x03, 0x02, 0x0F, 0xB4, 0x00, 0x00]).is_ok());
+    }
 
     #[test]
     fn the_crc_is_left_appended_swapped_or_spoilt() {
