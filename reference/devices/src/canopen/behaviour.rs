@@ -37,8 +37,8 @@ pub struct Behaviour {
     pub abort_multiplexer: AbortMultiplexer,
     /// The toggle bit alternates in the answers of a segmented upload.
     pub toggle_alternates: bool,
-    /// How many bytes too many an expedited upload response says it carries.
-    pub expedited_surplus: u8,
+    /// The size that an expedited upload response gives is one too high, of four bytes one too low.
+    pub expedited_size_off_by_one: bool,
     /// An upload after a download gives the value from before it.
     pub upload_lags_download: bool,
     /// A download is confirmed.
@@ -149,7 +149,7 @@ impl Default for Behaviour {
             abort_no_sub_index: 0x0609_0011,
             abort_multiplexer: AbortMultiplexer::OfRequest,
             toggle_alternates: true,
-            expedited_surplus: 0,
+            expedited_size_off_by_one: false,
             upload_lags_download: false,
             download_confirmed: true,
             mapping_entry_big_endian: false,

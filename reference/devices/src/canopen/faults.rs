@@ -68,9 +68,9 @@ pub(crate) const TOGGLE_NOT_ALTERNATED: Fault = Fault {
 pub(crate) const EXPEDITED_SIZE_WRONG: Fault = Fault {
     name: "expedited-size-wrong",
     breaks: "CiA 301: SDO upload initiate, number of bytes without data",
-    words: "says that an expedited value has one byte more than it has",
+    words: "says that an expedited value has one byte more than it has, and that four are three",
     caught_by: "sdo",
-    apply: |behaviour| behaviour.canopen.expedited_surplus = 1,
+    apply: |behaviour| behaviour.canopen.expedited_size_off_by_one = true,
 };
 
 pub(crate) const STALE_VALUE_AFTER_WRITE: Fault = Fault {

@@ -125,7 +125,11 @@ impl Slave {
             if let Some(number) = data.get_mut(..value.len()).filter(|_| reversed) {
                 number.reverse();
             }
-            let size = (value.len() + usize::from(self.behaviour.expedited_surplus)).min(4);
+            let size = match value.len() {
+                size if !self.behaviour.expedited_size_off_by_one => size,
+                4 => 3,
+                size => size + 1,
+            };
             *command = 0x43 | ((4 - size) << 2).to_le_bytes()[0];
         } else {
             *command = 0x41;

@@ -45,7 +45,6 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         faults::BOOT_UP_MISSING,
         faults::HEARTBEAT_STATE_WRONG,
         faults::TPDO_ONE_SYNC_LATE,
-        faults::TOGGLE_NOT_ALTERNATED,
         faults::EXPEDITED_SIZE_WRONG,
         faults::STALE_VALUE_AFTER_WRITE,
         faults::SDO_ANSWERED_IN_STOPPED,
@@ -73,6 +72,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         modbus::faults::BARE_ADDRESS_ANSWERED,
         modbus::faults::WRONG_BYTE_COUNT,
         modbus::faults::WRITE_ECHO_WRONG_VALUE,
+        modbus::faults::WRITE_MULTIPLE_FORGETS,
     ],
     variants: &[
         canopen::variants::NO_TPDO_ON_START,

@@ -183,3 +183,23 @@ fn fault_in_exception() {
         &[("<< 01 86 02 C3 A1", "<< 01 06 02 A2 61")],
     );
 }
+
+#[test]
+fn fault_in_writing_several() {
+    departs(
+        &KIND,
+        "write-multiple-forgets",
+        "
+        wait 30 ms
+        < 701#00
+        >> 01 10 01 45 00 02 04 03 E8 07 D0 B9 EC
+        << 01 10 01 45 00 02 51 E1
+        >> 01 03 01 45 00 02 D4 22
+        << 01 03 04 03 E8 07 D0 79 EF
+        ",
+        &[(
+            "<< 01 03 04 03 E8 07 D0 79 EF",
+            "<< 01 03 04 03 E8 00 00 7A 43",
+        )],
+    );
+}

@@ -110,6 +110,8 @@ pub struct Behaviour {
     pub byte_count: ByteCount,
     /// Which value the answer to 06h names.
     pub echoed_value: EchoedValue,
+    /// How many of the registers of a 10h are written.
+    pub most_written: usize,
     /// Whether registers that hold a speed carry its sign.
     pub speed_sign: SpeedSign,
 }
@@ -130,6 +132,7 @@ impl Behaviour {
         bare_address_answered: false,
         byte_count: ByteCount::Bytes,
         echoed_value: EchoedValue::Written,
+        most_written: usize::MAX,
         speed_sign: SpeedSign::Kept,
     };
 }

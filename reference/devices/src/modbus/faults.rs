@@ -105,6 +105,16 @@ pub const WRITE_ECHO_WRONG_VALUE: Fault = Fault {
     apply: |behaviour| behaviour.modbus.echoed_value = EchoedValue::OneMore,
 };
 
+/// Huacheng drive only, for the encoder has no two registers side by side that are read as they were written: a write
+/// of several registers that is one of the first.
+pub const WRITE_MULTIPLE_FORGETS: Fault = Fault {
+    name: "write-multiple-forgets",
+    breaks: "MODBUS application protocol V1.1b3, 6.12: 10h writes a block of contiguous registers",
+    words: "writes the first of several registers and confirms them all",
+    caught_by: "modbus",
+    apply: |behaviour| behaviour.modbus.most_written = 1,
+};
+
 /// Encoder only: silence after a change of address.
 pub const ADDRESS_CHANGE_NOT_ANSWERED: Fault = Fault {
     name: "address-change-not-answered",
@@ -144,6 +154,7 @@ pub const FAULTS: &[Fault] = &[
     BARE_ADDRESS_ANSWERED,
     WRONG_BYTE_COUNT,
     WRITE_ECHO_WRONG_VALUE,
+    WRITE_MULTIPLE_FORGETS,
     ADDRESS_CHANGE_NOT_ANSWERED,
     ADDRESS_CHANGE_ANSWERED_FROM_OLD,
     SPEED_SIGN_LOST,

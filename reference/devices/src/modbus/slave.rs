@@ -329,7 +329,8 @@ impl<R: Registers> ModbusSlave<R> {
         for (register, value) in (start..=last).zip(values.clone()) {
             self.registers.check_write(register, value)?;
         }
-        for (register, value) in (start..=last).zip(values) {
+        let written = (start..=last).zip(values).take(self.behaviour.most_written);
+        for (register, value) in written {
             self.registers.write(register, value);
         }
         Ok([start.to_be_bytes(), quantity.to_be_bytes()].concat())
