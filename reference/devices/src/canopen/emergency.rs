@@ -8,7 +8,8 @@ use super::queue::{Service, identifier};
 use super::{Address, Slave};
 
 const ERROR_REGISTER: Address = Address::new(0x1001, 0);
-const HISTORY_INDEX: u16 = 0x1003;
+/// The predefined error field.
+pub(super) const ERROR_HISTORY: u16 = 0x1003;
 const COB_ID: Address = Address::new(0x1014, 0);
 
 /// An error that comes and goes: its code and its bit of the error register.
@@ -60,7 +61,7 @@ impl Slave {
 
     /// The newest error is first; as many are kept as the dictionary has places.
     fn remember(&mut self, code: u16) {
-        let place = |sub| Address::new(HISTORY_INDEX, sub);
+        let place = |sub| Address::new(ERROR_HISTORY, sub);
         let count = self.objects.number(place(0)).unwrap_or(0);
         let Ok(count) = u8::try_from(count) else {
             return;
@@ -79,7 +80,7 @@ impl Slave {
     /// Clears 1003h.
     pub(super) fn forget_errors(&mut self) {
         for sub in 0..=254 {
-            self.objects.set_number(Address::new(HISTORY_INDEX, sub), 0);
+            self.objects.set_number(Address::new(ERROR_HISTORY, sub), 0);
         }
     }
 

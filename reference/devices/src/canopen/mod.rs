@@ -1,6 +1,6 @@
 //! A CANopen slave, driven from outside: object dictionary, SDO server, NMT, error control, PDO, SYNC, EMCY, LSS.
 //!
-//! A device gives it a [`Profile`] (what it can do), an [`Application`] (what its objects mean) and a [`Behaviour`].
+//! A device gives it a profile (what it can do), an application (what its objects mean) and a [`Behaviour`].
 
 mod abort;
 mod address;
@@ -21,6 +21,7 @@ mod slave;
 mod sync;
 mod tpdo;
 pub(crate) mod variants;
+mod write;
 
 pub(crate) use abort::Abort;
 pub(crate) use address::Address;

@@ -1,0 +1,197 @@
+//! Downloads, expedited and segmented.
+
+use fieldproof_link::Instant;
+
+use super::{LONGEST_VALUE, Refusal, SEGMENT, Transfer, is_mapping_entry};
+use crate::canopen::{Abort, Address, Application, Slave};
+
+impl Slave {
+    /// | bits of byte 0 | hold |
+    /// | --- | --- |
+    /// | 2, 3 | data bytes without data, if expedited and sized |
+    /// | 1 | expedited |
+    /// | 0 | the size is given |
+    pub(super) fn initiate_download(
+        &mut self,
+        now: Instant,
+        command: u8,
+        address: Address,
+        data: [u8; 4],
+        application: &mut dyn Application,
+    ) -> Result<(), Refusal> {
+        let refused = |abort| (address, abort);
+        self.sdo.transfer = Transfer::None;
+        let slot = self.objects.find(address).map_err(refused)?;
+        let Some(object) = self.objects.at(slot).filter(|object| object.writable) else {
+            return Err(refused(Abort::READ_ONLY));
+        };
+        let fixed = object.size();
+        let sized = command & 0x01 != 0;
+        if command & 0x02 == 0 {
+            let size = sized.then(|| u32::from_le_bytes(data) as usize);
+            let longest = fixed.unwrap_or(LONGEST_VALUE);
+            match size {
+                Some(size) if size > longest => return Err(refused(Abort::TOO_LONG)),
+                Some(size) if fixed.is_some_and(|fixed| size < fixed) => {
+                    return Err(refused(Abort::TOO_SHORT));
+                }
+                _ => {}
+            }
+            self.sdo.buffer.clear();
+            self.sdo.transfer = Transfer::Download {
+                address,
+                size,
+                toggle: false,
+            };
+            self.confirm(now, 0x60, address, [0; 4]);
+            return Ok(());
+        }
+        let size = if sized {
+            4 - usize::from(command >> 2 & 0x03)
+        } else {
+            fixed.unwrap_or(4).min(4)
+        };
+        let mut data = data;
+        if self.behaviour.mapping_entry_big_endian && is_mapping_entry(address) {
+            data.reverse();
+        }
+        let value = data.get(..size).unwrap_or(&data);
+        self.commit(now, 0x60, address, slot, value, application)
+    }
+
+    pub(super) fn download_segment(
+        &mut self,
+        now: Instant,
+        request: &[u8; 8],
+        application: &mut dyn Application,
+    ) -> Result<(), Refusal> {
+        let [command, m0, m1, m2, ..] = *request;
+        let Transfer::Download {
+            address,
+            size,
+            toggle,
+        } = self.sdo.transfer
+        else {
+            let named = Address::from_multiplexer([m0, m1, m2]);
+            return Err((named, Abort::UNKNOWN_COMMAND));
+        };
+        let refused = |abort| (address, abort);
+        if (command & 0x10 != 0) != toggle {
+            return Err(refused(Abort::TOGGLE));
+        }
+        let slot = self.objects.find(address).map_err(refused)?;
+        let fixed = self.objects.at(slot).and_then(|object| object.size());
+        let [_, data @ ..] = request;
+        let used = SEGMENT - usize::from(command >> 1 & 0x07);
+        self.sdo.buffer.extend(data.iter().take(used));
+        if self.sdo.buffer.len() > size.or(fixed).unwrap_or(LONGEST_VALUE) {
+            return Err(refused(Abort::TOO_LONG));
+        }
+        let answer = 0x20 | u8::from(toggle) << 4;
+        if command & 0x01 == 0 {
+            self.sdo.transfer = Transfer::Download {
+                address,
+                size,
+                toggle: !toggle,
+            };
+            self.confirm_segment(now, answer);
+            return Ok(());
+        }
+        self.sdo.transfer = Transfer::None;
+        if size.is_some_and(|size| size != self.sdo.buffer.len()) {
+            return Err(refused(Abort::LENGTH));
+        }
+        let value = std::mem::take(&mut self.sdo.buffer);
+        let outcome = self.commit(now, answer, address, slot, &value, application);
+        self.sdo.buffer = value;
+        outcome
+    }
+
+    /// Writes, and answers with `command` unless the application takes its time.
+    fn commit(
+        &mut self,
+        now: Instant,
+        command: u8,
+        address: Address,
+        slot: usize,
+        value: &[u8],
+        application: &mut dyn Application,
+    ) -> Result<(), Refusal> {
+        if self.behaviour.upload_lags_download {
+            let before = self.objects.at(slot).map(|object| object.value().to_vec());
+            self.sdo.before = before.map(|before| (address, before));
+        }
+        let node = self.node;
+        let done = self
+            .write(now, address, slot, value, application)
+            .map_err(|abort| (address, abort))?;
+        if !done {
+            self.sdo.buffer.clear();
+            self.sdo.buffer.extend_from_slice(value);
+            self.sdo.transfer = Transfer::Writing { address, command };
+            return Ok(());
+        }
+        let mut echo = [0; 4];
+        echo.iter_mut()
+            .zip(value)
+            .for_each(|(to, from)| *to = *from);
+        self.confirm_from(now, node, command, address, echo);
+        Ok(())
+    }
+
+    fn confirm(&mut self, now: Instant, command: u8, address: Address, echo: [u8; 4]) {
+        self.confirm_from(now, self.node, command, address, echo);
+    }
+
+    /// The answer to a download comes from the node that it was sent to.
+    fn confirm_from(
+        &mut self,
+        now: Instant,
+        node: u8,
+        command: u8,
+        address: Address,
+        echo: [u8; 4],
+    ) {
+        if command != 0x60 {
+            return self.confirm_segment(now, command);
+        }
+        if !self.behaviour.download_confirmed {
+            return;
+        }
+        let [m0, m1, m2] = address.multiplexer();
+        let [e0, e1, e2, e3] = if self.behaviour.echo_download_data {
+            echo
+        } else {
+            [0; 4]
+        };
+        self.respond_from(now, node, [command, m0, m1, m2, e0, e1, e2, e3]);
+    }
+
+    fn confirm_segment(&mut self, now: Instant, command: u8) {
+        self.respond(now, [command, 0, 0, 0, 0, 0, 0, 0]);
+    }
+
+    /// The application has written what was to be written to `address`.
+    pub(crate) fn finish_download(
+        &mut self,
+        now: Instant,
+        address: Address,
+        outcome: Result<(), Abort>,
+    ) {
+        let Transfer::Writing {
+            address: awaited,
+            command,
+        } = self.sdo.transfer
+        else {
+            return;
+        };
+        if awaited != address {
+            return;
+        }
+        self.sdo.transfer = Transfer::None;
+        match outcome {
+            Ok(()) => self.confirm(now, command, address, [0; 4]),
+            Err(abort) => self.abort(now, address, abort),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Uploads, expedited and segmented.
+
+use fieldproof_link::Instant;
+
+use super::{Refusal, SEGMENT, Transfer, is_mapping_entry};
+use crate::canopen::{Abort, Address, Answer, Application, Slave};
+
+impl Slave {
+    pub(super) fn initiate_upload(
+        &mut self,
+        now: Instant,
+        address: Address,
+        application: &mut dyn Application,
+    ) -> Result<(), Refusal> {
+        let refused = |abort| (address, abort);
+        self.sdo.transfer = Transfer::None;
+        let slot = self.objects.find(address).map_err(refused)?;
+        if self.objects.at(slot).is_none_or(|object| !object.readable) {
+            return Err(refused(Abort::WRITE_ONLY));
+        }
+        match application.reading(address) {
+            Answer::Now => self.answer_upload(now, address, slot),
+            Answer::Refused(abort) => return Err(refused(abort)),
+            Answer::Later => self.sdo.transfer = Transfer::Reading(address),
+        }
+        Ok(())
+    }
+
+    fn answer_upload(&mut self, now: Instant, address: Address, slot: usize) {
+        let before = self.sdo.before.as_ref();
+        let before = before.filter(|(written, _)| *written == address);
+        let value = match (before, self.objects.at(slot)) {
+            (Some((_, value)), _) => value.as_slice(),
+            (None, Some(object)) => object.value(),
+            (None, None) => return,
+        };
+        let mut response = [0; 8];
+        let [command, m0, m1, m2, data @ ..] = &mut response;
+        [*m0, *m1, *m2] = address.multiplexer();
+        if (1..=4).contains(&value.len()) {
+            data.iter_mut()
+                .zip(value)
+                .for_each(|(to, from)| *to = *from);
+            let reversed = self.behaviour.upload_big_endian
+                || (self.behaviour.mapping_entry_big_endian && is_mapping_entry(address));
+            if let Some(number) = data.get_mut(..value.len()).filter(|_| reversed) {
+                number.reverse();
+            }
+            let size = match value.len() {
+                size if !self.behaviour.expedited_size_off_by_one => size,
+                4 => 3,
+                size => size + 1,
+            };
+            *command = 0x43 | ((4 - size) << 2).to_le_bytes()[0];
+        } else {
+            *command = 0x41;
+            let [s0, s1, ..] = value.len().to_le_bytes();
+            *data = [s0, s1, 0, 0];
+            self.sdo.buffer.clear();
+            self.sdo.buffer.extend_from_slice(value);
+            self.sdo.transfer = Transfer::Upload {
+                address,
+                offset: 0,
+                toggle: false,
+            };
+        }
+        self.respond(now, response);
+    }
+
+    /// | bits of byte 0 | hold |
+    /// | --- | --- |
+    /// | 4 | toggle |
+    /// | 1 to 3 | in the answer: data bytes without data |
+    /// | 0 | in the answer: this was the last segment |
+    pub(super) fn upload_segment(
+        &mut self,
+        now: Instant,
+        command: u8,
+        named: Address,
+    ) -> Result<(), Refusal> {
+        let Transfer::Upload {
+            address,
+            offset,
+            toggle,
+        } = self.sdo.transfer
+        else {
+            return Err((named, Abort::UNKNOWN_COMMAND));
+        };
+        if (command & 0x10 != 0) != toggle {
+            return Err((address, Abort::TOGGLE));
+        }
+        let rest = self.sdo.buffer.get(offset..).unwrap_or_default();
+        let size = rest.len().min(SEGMENT);
+        let last = rest.len() <= SEGMENT;
+        let mut response = [0; 8];
+        let [first, data @ ..] = &mut response;
+        data.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
+        let shown = toggle && self.behaviour.toggle_alternates;
+        let unused = (SEGMENT - size).to_le_bytes()[0];
+        *first = u8::from(shown) << 4 | unused << 1 | u8::from(last);
+        self.sdo.transfer = if last {
+            Transfer::None
+        } else {
+            Transfer::Upload {
+                address,
+                offset: offset + size,
+                toggle: !toggle,
+            }
+        };
+        self.respond(now, response);
+        Ok(())
+    }
+
+    /// The application has read `address`.
+    pub(crate) fn finish_upload(
+        &mut self,
+        now: Instant,
+        address: Address,
+        outcome: Result<&[u8], Abort>,
+    ) {
+        if let Ok(value) = outcome {
+            self.objects.set(address, value);
+        }
+        if self.sdo.transfer != Transfer::Reading(address) {
+            return;
+        }
+        self.sdo.transfer = Transfer::None;
+        match (outcome, self.objects.find(address)) {
+            (Ok(_), Ok(slot)) => self.answer_upload(now, address, slot),
+            (Err(abort), _) | (_, Err(abort)) => self.abort(now, address, abort),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Writing an object, by SDO or by PDO: what is allowed, and what else it changes.
+
+use fieldproof_link::Instant;
+
+use super::emergency::ERROR_HISTORY;
+use super::error_control::{GUARD_TIME, LIFE_TIME_FACTOR, PRODUCER_TIME};
+use super::memory;
+use super::pdo;
+use super::pdo_rules::{self, Parameter};
+use super::sync;
+use super::{Abort, Address, Answer, Application, Slave};
+
+const STORE: u16 = 0x1010;
+const RESTORE: u16 = 0x1011;
+
+impl Slave {
+    /// Writes `value` to the object at `slot`, for an SDO or a PDO; `false` if the application will say when it is done.
+    pub(super) fn write(
+        &mut self,
+        now: Instant,
+        address: Address,
+        slot: usize,
+        value: &[u8],
+        application: &mut dyn Application,
+    ) -> Result<bool, Abort> {
+        let object = self.objects.at(slot).ok_or(Abort::NO_OBJECT)?;
+        if !object.writable {
+            return Err(Abort::READ_ONLY);
+        }
+        object.takes(value)?;
+        if let Some(twin) = self.twin(address).and_then(|twin| self.objects.get(twin)) {
+            twin.takes(value)?;
+        }
+        if !self.permitted(address, value)? {
+            return Ok(true);
+        }
+        match application.writing(address, value) {
+            Answer::Now => {}
+            Answer::Refused(abort) => return Err(abort),
+            Answer::Later => {
+                self.objects.set(address, value);
+                return Ok(false);
+            }
+        }
+        for address in [Some(address), self.twin(address)].into_iter().flatten() {
+            self.objects.set(address, value);
+            application.written(address, &mut self.objects);
+            self.keep(address);
+            self.follow(now, address);
+        }
+        Ok(true)
+    }
+
+    fn twin(&self, address: Address) -> Option<Address> {
+        let twins = self.profile.twins.iter();
+        twins.fold(None, |found, (first, second)| match address {
+            address if address == *first => Some(*second),
+            address if address == *second => Some(*first),
+            _ => found,
+        })
+    }
+
+    /// Whether the value is to be stored as the others are; `false` if it was an order and is done.
+    fn permitted(&mut self, address: Address, value: &[u8]) -> Result<bool, Abort> {
+        let bytes = value.iter().take(4).rev();
+        let number = bytes.fold(0, |number, byte| number << 8 | u32::from(*byte));
+        let index = address.index();
+        if let Some(parameter) = Parameter::of(index) {
+            pdo_rules::check(&self.objects, &self.profile, parameter, address, value)?;
+        } else if address == sync::COB_ID {
+            sync::check(
+                &self.profile,
+                self.objects.number(address).unwrap_or(0),
+                number,
+            )?;
+        } else if index == ERROR_HISTORY {
+            if number != 0 {
+                return Err(Abort::INVALID_VALUE);
+            }
+            self.forget_errors();
+            return Ok(false);
+        } else if matches!(index, STORE | RESTORE) && address.sub() != 0 {
+            self.store_or_restore(address, value)?;
+            return Ok(false);
+        } else if Some(address) == self.profile.node_object {
+            if !(1..=127).contains(&number) {
+                return Err(Abort::INVALID_VALUE);
+            }
+        } else if Some(address) == self.profile.bit_rate_object {
+            let rates = self.profile.lss.map_or(&[][..], |lss| lss.bit_rates);
+            if number as usize >= rates.len() {
+                return Err(Abort::INVALID_VALUE);
+            }
+        }
+        Ok(true)
+    }
+
+    /// 1010h takes `save`, 1011h `load`; both only where bit 0 of the value says that they can.
+    fn store_or_restore(&mut self, address: Address, value: &[u8]) -> Result<(), Abort> {
+        let able = self.objects.number(address).unwrap_or(0) & 1 != 0;
+        let signature: &[u8] = if address.index() == STORE {
+            b"save"
+        } else {
+            b"load"
+        };
+        if !able || value != signature {
+            return Err(Abort::CANNOT_STORE);
+        }
+        let group = memory::group(address.sub());
+        self.memory
+            .values
+            .retain(|saved, _| !group.contains(&saved.index()));
+        if address.index() == STORE {
+            let differing = self.objects.differing(&group, self.node);
+            self.memory.values.extend(differing);
+        }
+        Ok(())
+    }
+
+    /// Saves what is saved when it is written; a default need not be.
+    fn keep(&mut self, address: Address) {
+        if !self.profile.saved_on_write.contains(&address.index()) {
+            return;
+        }
+        self.memory.values.remove(&address);
+        if let Some(value) = self.objects.unless_default(address, self.node) {
+            self.memory.values.insert(address, value.to_vec());
+        }
+    }
+
+    /// What else a new value changes.
+    fn follow(&mut self, now: Instant, address: Address) {
+        let index = address.index();
+        if Parameter::of(index).is_some() {
+            if pdo_rules::is_transmit(index) {
+                self.reconfigure_tpdo(now, index);
+            } else {
+                self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
+            }
+        } else if address == sync::COB_ID || address == sync::CYCLE {
+            self.reconfigure_sync(now);
+        } else if address == PRODUCER_TIME {
+            self.reconfigure_heartbeat(now);
+        } else if address == GUARD_TIME || address == LIFE_TIME_FACTOR {
+            self.reconfigure_guarding();
+        } else if Some(address) == self.profile.node_object {
+            let node = self.objects.number(address).unwrap_or(1);
+            self.memory.node = node.to_le_bytes()[0];
+            self.pending_node = self.memory.node;
+            self.activate_pending_node();
+        } else if Some(address) == self.profile.bit_rate_object {
+            let code = self.objects.number(address).unwrap_or(0) as usize;
+            let rate = self.profile.lss.and_then(|lss| lss.bit_rates.get(code));
+            self.memory.bit_rate = rate.copied().unwrap_or(self.memory.bit_rate);
+            self.pending_bit_rate = self.memory.bit_rate;
+        }
+    }
+}
