@@ -214,10 +214,14 @@ impl serde::de::Error for ReadError {
             Unexpected::NewtypeVariant | Unexpected::StructVariant => "a map".to_owned(),
             other => other.to_string(),
         };
+        let message = match found.as_str() {
+            "nothing" => "the value is missing".to_owned(),
+            found => format!("{found} cannot stand here"),
+        };
         ReadError(Problem::new(
             code::WRONG_SHAPE,
-            format!("{found} cannot stand here"),
-            format!("expected {expected}"),
+            message,
+            format!("expected {}", in_our_words(&expected.to_string())),
         ))
     }
 
@@ -248,7 +252,17 @@ impl serde::de::Error for ReadError {
     }
 }
 
-/// `expected one of ...`, sorted as the language lists them.
+/// What serde calls the kinds of values.
+fn in_our_words(expected: &str) -> &str {
+    match expected {
+        "a string" => "a text",
+        "a sequence" => "a list",
+        "a boolean" => "true or false",
+        other => other,
+    }
+}
+
+/// `expected one of ...`
 pub(crate) fn expected_one_of<T: AsRef<str>>(words: &[T]) -> String {
     match words {
         [] => "expected nothing here".to_owned(),

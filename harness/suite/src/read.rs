@@ -127,14 +127,20 @@ impl<'a> Reader<'a> {
 
     /// Something else was expected here.
     fn mismatch<T>(&self, expected: &dyn serde::de::Expected) -> Result<T, ReadError> {
-        let mut error = ReadError::invalid_type(self.unexpected(), expected);
+        let error = ReadError::invalid_type(self.unexpected(), expected);
+        self.placed(Err(self.suspect_placeholder(error)))
+    }
+
+    /// `{name}` without quotes is a map with one key to YAML.
+    fn suspect_placeholder(&self, mut error: ReadError) -> ReadError {
         if let [Entry { key, value }] = self.node.entries()
             && value.kind == Kind::Empty
+            && key.at.column > self.node.at.column
         {
             let help = format!("a placeholder must stand in quotes: \"{{{}}}\"", key.text);
             error.0.help = Some(help);
         }
-        self.placed(Err(error))
+        error
     }
 
     fn visit_text<'de, V: Visitor<'de>>(
@@ -331,7 +337,9 @@ impl<'de> Deserializer<'de> for Reader<'_> {
                     })
             })),
             Kind::Map(entries) => match entries.as_slice() {
-                [entry] => self.placed(visitor.visit_enum(EntryAccess { map: self, entry })),
+                [entry] => self
+                    .placed(visitor.visit_enum(EntryAccess { map: self, entry }))
+                    .map_err(|error| self.suspect_placeholder(error)),
                 _ => self.mismatch(&"a map with one key"),
             },
             _ => self.mismatch(&"a word"),

@@ -9,7 +9,7 @@ use crate::file::{DecodeFile, ModbusException};
 use crate::forms::OneOrMany;
 use crate::model::Decode;
 use crate::problem::Wrong;
-use crate::scalar::{BitRate, CanId, Time};
+use crate::scalar::{BitRate, Bytes, CanId, Time};
 
 pub(crate) fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Duration, D::Error> {
     Time::deserialize(deserializer).map(|time| time.0)
@@ -54,6 +54,18 @@ pub(crate) fn decode_big_endian<'de, D: Deserializer<'de>>(
 
 pub(crate) fn pdo_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
     within(u8::deserialize(deserializer)?, 1, 4)
+}
+
+pub(crate) fn pdo_data<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Bytes, D::Error> {
+    let bytes = Bytes::deserialize(deserializer)?;
+    if bytes.0.len() <= 8 {
+        return Ok(bytes);
+    }
+    Err(D::Error::custom(Wrong::new(
+        code::BYTES,
+        format!("{} bytes, and a PDO has at most 8", bytes.0.len()),
+        "expected at most 8 bytes",
+    )))
 }
 
 pub(crate) fn node<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {

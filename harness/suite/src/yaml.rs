@@ -115,6 +115,7 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Node, Vec<Diagnostic>> {
     }
     let mut builder = Builder::new(path, text);
     builder.tabs();
+    builder.line_ends();
     if !builder.problems.is_empty() {
         return Err(builder.problems);
     }
@@ -212,6 +213,25 @@ impl<'a> Builder<'a> {
                 );
                 problem.help = Some("set the editor to put spaces for tabs in YAML".to_owned());
                 self.problems.push(problem);
+                return;
+            }
+        }
+    }
+
+    /// YAML ends a line at a carriage return alone, nobody else does; lines would not be where people see them.
+    fn line_ends(&mut self) {
+        for (number, line) in self.lines.iter().enumerate() {
+            if let Some(before) = line.split_once('\r').map(|(before, _)| before) {
+                let column = before.chars().count() as u32 + 1;
+                let at = Position {
+                    line: number as u32 + 1,
+                    column,
+                    end_column: column + 1,
+                };
+                let message = "this is not YAML: a carriage return without a line feed";
+                let label = "expected a line feed after it";
+                self.problems
+                    .push(error(self.path, code::NOT_YAML, at, message, label));
                 return;
             }
         }
@@ -406,9 +426,13 @@ impl<'a> Builder<'a> {
             format!("this is not YAML: {}", scan.info()),
             "",
         );
-        let line = self.lines.get(scan.marker().line().saturating_sub(1));
-        if line.is_some_and(|line| line.contains("} ") || line.ends_with('}')) {
+        let line = scan.marker().line().checked_sub(1);
+        let line = line.and_then(|index| self.lines.get(index)).copied();
+        let line = line.unwrap_or_default();
+        if line.contains('{') {
             problem.help = Some("a text that starts with `{` must stand in quotes".to_owned());
+        } else if line.matches(": ").count() > 1 {
+            problem.help = Some("a text with `: ` in it must stand in quotes".to_owned());
         }
         Box::new(problem)
     }
@@ -462,6 +486,13 @@ impl<'a> Builder<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nodes_stay_small() {
+        // 100,000 rows of a table are held as nodes.
+        assert!(size_of::<Node>() <= 48, "{}", size_of::<Node>());
+        assert!(size_of::<Entry>() <= 80, "{}", size_of::<Entry>());
+    }
 
     fn place(node: &Node) -> (u32, u32, u32) {
         (node.at.line, node.at.column, node.at.end_column)

@@ -45,7 +45,7 @@ impl RawValue {
             return Ok(Value::Text(self.0.clone()));
         };
         if let Some(number) = whole_number(&self.0) {
-            return fits(number, low, high).map(Value::Number);
+            return fits(number, low, high, value_type).map(Value::Number);
         }
         let is_time = self.0.starts_with(|first: char| first.is_ascii_digit());
         if !is_time {
@@ -75,7 +75,7 @@ impl RawValue {
                 "between two counts",
             ));
         }
-        fits(counts(time, unit), low, high)?;
+        fits(counts(time, unit), low, high, value_type)?;
         Ok(Value::Duration(time))
     }
 }
@@ -84,18 +84,35 @@ fn counts(time: Duration, unit: Duration) -> i128 {
     (time.as_nanos() / unit.as_nanos().max(1)) as i128
 }
 
-fn fits(number: i128, low: i128, high: i128) -> Result<i128, Wrong> {
+fn fits(number: i128, low: i128, high: i128, value_type: ValueType) -> Result<i128, Wrong> {
     if (low..=high).contains(&number) {
         return Ok(number);
     }
     Err(Wrong::new(
         code::DOES_NOT_FIT,
-        format!("{number} does not fit its type"),
+        format!("{number} does not fit `{}`", value_type.word()),
         format!("expected {low} to {high}"),
     ))
 }
 
 impl ValueType {
+    /// As it is written after `as`.
+    fn word(self) -> &'static str {
+        match self {
+            ValueType::U8 => "u8",
+            ValueType::U16 => "u16",
+            ValueType::U24 => "u24",
+            ValueType::U32 => "u32",
+            ValueType::U64 => "u64",
+            ValueType::I8 => "i8",
+            ValueType::I16 => "i16",
+            ValueType::I32 => "i32",
+            ValueType::I64 => "i64",
+            ValueType::SignMagnitude16 => "sign-magnitude-16",
+            ValueType::Text => "text",
+        }
+    }
+
     /// The lowest and the highest number it holds; `None` for a text.
     pub(crate) fn limits(self) -> Option<(i128, i128)> {
         let unsigned = |bits: u32| Some((0, (1i128 << bits) - 1));

@@ -232,6 +232,7 @@ fn not_a_step(node: &Node) -> Box<Problem> {
                     first.key.text, second.key.text
                 ))
         }
+        (Kind::Map(_), _) => Problem::new(code::NOT_A_STEP, "an empty step", label).at(node.at),
         _ => {
             let message = format!("a step is a map, not {}", node.kind_in_words());
             Problem::new(code::NOT_A_STEP, message, label).at(node.at)

@@ -54,6 +54,8 @@ struct CaseTemplate {
     /// Everything but the table.
     body: Node,
     rows: Vec<Node>,
+    /// The rows could not be read, so that nothing can be said of what stands for a placeholder.
+    without_rows: bool,
     /// The columns that name a case.
     key: Vec<String>,
 }

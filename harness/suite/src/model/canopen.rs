@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::Decode;
 use crate::file::{ExpectTpdoFile, SyncFile};
-use crate::read_with::{optional_node, optional_time, pdo_number, ten, time};
+use crate::read_with::{optional_node, optional_time, pdo_data, pdo_number, ten, time};
 use crate::scalar::{BytePatternText, Bytes, Time, Tolerance};
 
 /// See [`Step::Nmt`]. Short form: the command alone.
@@ -169,6 +169,7 @@ pub struct SendRpdo {
     #[serde(deserialize_with = "pdo_number")]
     #[schemars(range(min = 1, max = 4))]
     pub number: u8,
-    /// What it carries.
+    /// What it carries, at most 8 bytes.
+    #[serde(deserialize_with = "pdo_data")]
     pub data: Bytes,
 }
