@@ -13,9 +13,10 @@ const LARGEST_BYTES: u64 = 16 * 1024 * 1024;
 const DEEPEST: usize = 32;
 
 /// Reads the file at `path`.
-pub(crate) fn read(path: &Path) -> Result<SourceFile, Problem> {
+pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
     let shown = path.display().to_string();
-    let fail = |message: String| Problem::new(Severity::Error, message).in_file(shown.clone());
+    let fail =
+        |message: String| Box::new(Problem::new(Severity::Error, message).in_file(shown.clone()));
     let unreadable = |error: std::io::Error| fail(format!("cannot be read: {error}"));
     let too_large = || {
         fail(format!(
@@ -46,15 +47,15 @@ pub(crate) fn read(path: &Path) -> Result<SourceFile, Problem> {
 }
 
 /// Every `*.yaml` and `*.yml` below `folder`, sorted by path. Links to folders are not followed.
-pub(crate) fn yaml_below(folder: &Path) -> Result<Vec<PathBuf>, Problem> {
+pub(crate) fn yaml_below(folder: &Path) -> Result<Vec<PathBuf>, Box<Problem>> {
     let mut found = Vec::new();
     collect(folder, 0, &mut found)?;
     Ok(found)
 }
 
-fn collect(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<(), Problem> {
+fn collect(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<(), Box<Problem>> {
     let fail = |message: String| {
-        Problem::new(Severity::Error, message).in_file(folder.display().to_string())
+        Box::new(Problem::new(Severity::Error, message).in_file(folder.display().to_string()))
     };
     if depth > DEEPEST {
         return Err(fail(format!("folders are more than {DEEPEST} deep")));

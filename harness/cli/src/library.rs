@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use fieldproof_devices::DeviceKind;
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_dictionary::{Dictionary, eds};
-use fieldproof_report::{Problem, Severity};
+use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_suite::device::DeviceDescription;
 use fieldproof_suite::{Diagnostic, SourceFile, Suite};
 
@@ -64,16 +65,16 @@ enum Folder {
 }
 
 impl Folder {
-    fn file(&self, name: &str) -> Result<SourceFile, Problem> {
+    fn file(&self, name: &str) -> Result<SourceFile, Box<Problem>> {
         match self {
             Folder::OnDisk(folder) => input::read(&folder.join(name)),
             Folder::Embedded(folder) => {
                 let path = format!("{folder}/{name}");
                 match embedded::text(&path) {
                     Some(text) => Ok(source_file((path.as_str(), text))),
-                    None => {
-                        Err(Problem::new(Severity::Error, "there is no such file").in_file(path))
-                    }
+                    None => Err(Box::new(
+                        Problem::new(Severity::Error, "there is no such file").in_file(path),
+                    )),
                 }
             }
         }
@@ -86,6 +87,9 @@ fn source_file((path, text): (&str, &str)) -> SourceFile {
         text: text.to_owned(),
     }
 }
+
+/// In so many lines the head of a suite is looked for.
+const HEAD_LINES: u32 = 100;
 
 #[derive(Default)]
 struct Reader {
@@ -124,7 +128,7 @@ impl Reader {
                     .push(problem.in_file(folder.display().to_string()));
             }
             Ok(files) => files.iter().for_each(|file| self.file(file)),
-            Err(problem) => self.problems.push(problem),
+            Err(problem) => self.problems.push(*problem),
         }
     }
 
@@ -134,7 +138,7 @@ impl Reader {
             return;
         }
         match input::read(path) {
-            Err(problem) => self.problems.push(problem),
+            Err(problem) => self.problems.push(*problem),
             Ok(file) if path.file_name().is_some_and(|name| name == "device.yaml") => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
                 self.descriptions.push((file, Folder::OnDisk(folder)));
@@ -184,12 +188,17 @@ impl Reader {
         loaded.suites
     }
 
+    /// The problems of one file share its text.
     fn diagnostics(&mut self, diagnostics: &[Diagnostic], files: &[SourceFile]) {
+        let mut shared: (&str, Arc<str>) = ("", Arc::default());
         for diagnostic in diagnostics {
-            let file = files.iter().find(|file| file.path == diagnostic.path);
-            let text = file.map(|file| file.text.as_str()).unwrap_or_default();
+            if shared.0 != diagnostic.path {
+                let file = files.iter().find(|file| file.path == diagnostic.path);
+                let text = file.map(|file| file.text.as_str()).unwrap_or_default();
+                shared = (&diagnostic.path, Arc::from(text));
+            }
             self.problems
-                .push(problems::of_diagnostic(diagnostic, text));
+                .push(problems::of_diagnostic(diagnostic, &shared.1));
         }
     }
 
@@ -259,15 +268,16 @@ impl Reader {
         match folder.file(name) {
             Ok(file) => {
                 let read = eds::read(&file.text);
+                let text = Arc::from(file.text);
                 let findings = read
                     .findings
                     .iter()
-                    .map(|it| problems::of_finding(it, &file.path, &file.text));
+                    .map(|it| problems::of_finding(it, &file.path, &text));
                 self.problems.extend(findings);
                 Some(read.dictionary)
             }
             Err(problem) => {
-                self.problems.push(problem);
+                self.problems.push(*problem);
                 None
             }
         }
@@ -277,15 +287,43 @@ impl Reader {
         match folder.file(name) {
             Ok(file) => {
                 if let Err(error) = RegisterMap::parse(&file.text) {
-                    self.problems
-                        .push(problems::of_table_error(&error, &file.path, &file.text));
+                    self.problems.push(problems::of_table_error(
+                        &error,
+                        &file.path,
+                        &Arc::from(file.text.as_str()),
+                    ));
                 }
             }
-            Err(problem) => self.problems.push(problem),
+            Err(problem) => self.problems.push(*problem),
         }
     }
 
-    fn finish(self, selection: &Selection) -> Result<Library, Complaint> {
+    /// A suite may be for one device only, and that must be one there is.
+    fn check_devices_of_suites(&mut self) {
+        let known: Vec<&str> = self.devices.keys().map(String::as_str).collect();
+        for suite in &self.suites {
+            let Some(name) = suite
+                .head
+                .device
+                .as_deref()
+                .filter(|name| !known.contains(name))
+            else {
+                continue;
+            };
+            let message = format!("no device is called \"{name}\"");
+            let mut problem = Problem::new(Severity::Error, message).in_file(suite.path.clone());
+            // The head stands at the top of its file.
+            let line = (1..=HEAD_LINES).find(|line| suite.line_text(*line).starts_with("device:"));
+            if let Some(line) = line {
+                problem.at.line = line;
+                problem.source = SourceText::Line(suite.line_text(line).to_owned());
+            }
+            self.problems.push(with_choice(problem, name, &known));
+        }
+    }
+
+    fn finish(mut self, selection: &Selection) -> Result<Library, Complaint> {
+        self.check_devices_of_suites();
         if self
             .problems
             .iter()

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use fieldproof_dictionary::eds::Finding;
 use fieldproof_dictionary::registers::TableError;
-use fieldproof_report::{Problem, Severity, SourceText, Span};
+use fieldproof_report::{Also, Problem, Severity, SourceText, Span};
 use fieldproof_suite::{Diagnostic, Position};
 
-pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &str) -> Problem {
+pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &Arc<str>) -> Problem {
     Problem {
         severity: match diagnostic.severity {
             fieldproof_suite::Severity::Error => Severity::Error,
@@ -17,19 +17,22 @@ pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &str) -> Problem {
         message: diagnostic.message.clone(),
         path: diagnostic.path.clone(),
         at: span(diagnostic.at),
-        source: SourceText::Whole(Arc::from(text)),
+        source: SourceText::Whole(Arc::clone(text)),
         label: diagnostic.label.clone(),
         also: diagnostic
             .also
             .iter()
-            .map(|(at, words)| (span(*at), words.clone()))
+            .map(|(at, words)| Also {
+                at: span(*at),
+                words: words.clone(),
+            })
             .collect(),
         notes: Vec::new(),
         help: diagnostic.help.clone(),
     }
 }
 
-pub(crate) fn of_finding(finding: &Finding, path: &str, text: &str) -> Problem {
+pub(crate) fn of_finding(finding: &Finding, path: &str, text: &Arc<str>) -> Problem {
     whole_line(
         Severity::Warning,
         finding.line,
@@ -40,18 +43,24 @@ pub(crate) fn of_finding(finding: &Finding, path: &str, text: &str) -> Problem {
     .help(finding.help.clone())
 }
 
-pub(crate) fn of_table_error(error: &TableError, path: &str, text: &str) -> Problem {
+pub(crate) fn of_table_error(error: &TableError, path: &str, text: &Arc<str>) -> Problem {
     whole_line(Severity::Error, error.line, error.text.clone(), path, text)
 }
 
-fn whole_line(severity: Severity, line: usize, message: String, path: &str, text: &str) -> Problem {
+fn whole_line(
+    severity: Severity,
+    line: usize,
+    message: String,
+    path: &str,
+    text: &Arc<str>,
+) -> Problem {
     Problem {
         at: Span {
             line: u32::try_from(line).unwrap_or(0),
             column: 0,
             end_column: 0,
         },
-        source: SourceText::Whole(Arc::from(text)),
+        source: SourceText::Whole(Arc::clone(text)),
         ..Problem::new(severity, message).in_file(path)
     }
 }

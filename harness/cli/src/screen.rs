@@ -17,6 +17,9 @@ pub(crate) struct Screen {
 /// The ink that everything for a [`Screen`] is made with.
 pub(crate) const INK: Ink = Ink::Coloured;
 
+/// Nobody reads more at once.
+const SHOWN_PROBLEMS: usize = 20;
+
 impl Screen {
     pub(crate) fn new(color: Color) -> Screen {
         let choice = match color {
@@ -48,12 +51,28 @@ impl Screen {
         self.print(&format!("{text}\n"));
     }
 
-    /// Prints `problems` to standard error.
+    /// Prints `problems` to standard error: the first of them, if they are many.
     pub(crate) fn complain(&mut self, problems: &[Problem]) {
-        for (index, problem) in problems.iter().enumerate() {
-            let gap = if index == 0 { "" } else { "\n" };
+        for (index, problem) in problems.iter().take(SHOWN_PROBLEMS).enumerate() {
+            let gap = if index == 0 {
+                ""
+            } else {
+                "
+"
+            };
             let text = render(problem, INK);
             let _ = write!(self.error, "{gap}{text}");
+        }
+        if let Some(more) = problems
+            .len()
+            .checked_sub(SHOWN_PROBLEMS)
+            .filter(|more| *more > 0)
+        {
+            let _ = writeln!(
+                self.error,
+                "
+and {more} more"
+            );
         }
         let _ = self.error.flush();
     }

@@ -70,6 +70,15 @@ pub enum SourceText {
     Whole(Arc<str>),
 }
 
+/// Another place that matters.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Also {
+    /// Where, in the same file.
+    pub at: Span,
+    /// Why it matters: `first defined here`.
+    pub words: String,
+}
+
 /// Something that is wrong, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Problem {
@@ -88,8 +97,8 @@ pub struct Problem {
     pub source: SourceText,
     /// Words beside the marked text; empty for none.
     pub label: String,
-    /// Other places in the same file that matter, each with its words.
-    pub also: Vec<(Span, String)>,
+    /// Other places in the same file that matter.
+    pub also: Vec<Also>,
     /// What else there is to know; a note may have several lines.
     pub notes: Vec<String>,
     /// What to do.

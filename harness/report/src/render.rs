@@ -5,7 +5,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use crate::ink::{Ink, verdict_style};
-use crate::problem::{Problem, Severity, SourceText, Span};
+use crate::problem::{Also, Problem, Severity, SourceText, Span};
 
 /// More text than this is not given to the snippet renderer: places further apart are shown as notes.
 const LONGEST_EXCERPT_BYTES: usize = 100_000;
@@ -35,8 +35,8 @@ pub fn render(problem: &Problem, ink: Ink) -> String {
         None => !problem.also.is_empty(),
     };
     if far {
-        for (span, words) in &problem.also {
-            let place = format!("{}:{}:{}: {words}", problem.path, span.line, span.column);
+        for Also { at, words } in &problem.also {
+            let place = format!("{}:{}:{}: {words}", problem.path, at.line, at.column);
             group = group.element(Level::NOTE.message(place));
         }
     }
@@ -132,7 +132,7 @@ fn excerpt(problem: &Problem) -> Option<Excerpt<'_>> {
                 problem
                     .also
                     .iter()
-                    .map(|(span, _)| span.line)
+                    .map(|also| also.at.line)
                     .filter(|line| *line > 0)
             };
             let first = lines().fold(problem.at.line, u32::min);
@@ -192,7 +192,7 @@ fn several_lines<'a>(
     let also: Option<Vec<_>> = problem
         .also
         .iter()
-        .map(|(span, words)| Some((range(*span)?, words.as_str())))
+        .map(|also| Some((range(also.at)?, also.words.as_str())))
         .collect();
     Some(Excerpt {
         text: &text[start..end],

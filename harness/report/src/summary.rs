@@ -262,6 +262,9 @@ fn last_line(
         .iter()
         .all(|lane| lane.complete && lane.stopped.is_none());
     let words = match (bad, whole) {
+        (0, true) if all.total() == all.skipped => {
+            ink.verdict(Verdict::Inconclusive, "nothing was played")
+        }
         (0, true) => ink.verdict(Verdict::Pass, "all passed"),
         (0, false) => ink.verdict(Verdict::Error, "not finished"),
         (bad, _) => ink.verdict(

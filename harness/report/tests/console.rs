@@ -119,6 +119,13 @@ fn lanes_side_by_side_are_shown_one_after_the_other() {
 }
 
 #[test]
+fn run_in_which_all_is_skipped_has_not_passed() {
+    let text = shown(&["drive"], ConsoleOptions::default(), &[Verdict::Skipped]);
+    assert!(text.contains("nothing was played"), "{text}");
+    assert!(!text.contains("all passed"), "{text}");
+}
+
+#[test]
 fn lane_that_breaks_off_is_not_passed() {
     let mut console = Console::new(&["drive"], ConsoleOptions::default());
     for event in lane("drive", &[Verdict::Pass]) {

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use fieldproof_report::{Ink, Problem, Severity, SourceText, Span, render};
+use fieldproof_report::{Also, Ink, Problem, Severity, SourceText, Span, render};
 use proptest::prelude::*;
 
 fn at(line: u32, column: u32, end_column: u32) -> Span {
@@ -12,6 +12,13 @@ fn at(line: u32, column: u32, end_column: u32) -> Span {
         line,
         column,
         end_column,
+    }
+}
+
+fn also(at: Span, words: &str) -> Also {
+    Also {
+        at,
+        words: words.to_owned(),
     }
 }
 
@@ -44,7 +51,7 @@ fn place_is_underlined() {
 fn other_place_is_shown_too() {
     let mut problem = unknown_verb();
     problem.help = None;
-    problem.also = vec![(at(1, 1, 6), "in these steps".to_owned())];
+    problem.also = vec![also(at(1, 1, 6), "in these steps")];
     let expected = r#"error[S004]: unknown verb "sdo-raed"
  --> suites/nmt.yaml:2:5
   |
@@ -98,7 +105,7 @@ fn of_a_very_long_line_the_part_around_the_place_is_shown() {
 fn place_far_away_is_a_note() {
     let mut problem = unknown_verb();
     problem.source = SourceText::Whole(Arc::from("0123456789\n".repeat(20_000)));
-    problem.also = vec![(at(19_999, 3, 4), "first defined here".to_owned())];
+    problem.also = vec![also(at(19_999, 3, 4), "first defined here")];
     let text = render(&problem, Ink::Plain);
     assert!(
         text.contains("note: suites/nmt.yaml:19999:3: first defined here"),
@@ -111,7 +118,7 @@ proptest! {
     #[test]
     fn any_place_in_any_text_is_rendered(
         text in "(\\PC|\n|\t|\r){0,60}", line in 0u32..6, column in 0u32..70, end_column in 0u32..70,
-        also in proptest::collection::vec((0u32..6, 0u32..70, 0u32..70), 0..3), whole: bool,
+        others in proptest::collection::vec((0u32..6, 0u32..70, 0u32..70), 0..3), whole: bool,
     ) {
         let mut problem = unknown_verb();
         problem.source = match whole {
@@ -119,7 +126,7 @@ proptest! {
             false => SourceText::Line(text),
         };
         problem.at = at(line, column, end_column);
-        problem.also = also.into_iter().map(|(line, column, end)| (at(line, column, end), "here".to_owned())).collect();
+        problem.also = others.into_iter().map(|(line, column, end)| also(at(line, column, end), "here")).collect();
         let rendered = render(&problem, Ink::Plain);
         prop_assert!(rendered.starts_with("error[S004]: unknown verb"), "{rendered}");
         prop_assert!(rendered.contains("suites/nmt.yaml"), "{rendered}");

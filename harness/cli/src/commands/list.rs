@@ -57,10 +57,10 @@ pub(crate) fn list(options: &ListOptions, screen: &mut Screen) -> Result<Exit, C
             match case.lower(&environment) {
                 Ok(lowered) => listed.push(listed_case(suite, lowered)),
                 Err(diagnostics) => {
-                    let text = "";
+                    let text = std::sync::Arc::default();
                     let problems = diagnostics
                         .iter()
-                        .map(|it| crate::problems::of_diagnostic(it, text));
+                        .map(|it| crate::problems::of_diagnostic(it, &text));
                     return Err(Complaint::inputs(problems.collect()));
                 }
             }
