@@ -1,6 +1,8 @@
 //! The events of a lane.
 
 use schemars::JsonSchema;
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::hex::{FrameLine, HexBytes};
@@ -233,7 +235,7 @@ pub struct Measurement {
     /// When it was complete.
     pub at_ns: u64,
     /// `SDO response time`, `heartbeat period (mean of 10)`.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// What was measured.
     pub value_ns: u64,
     /// How far off it may be.

@@ -225,7 +225,7 @@ prop_compose! {
         min_ns in option::of(any::<u64>()), max_ns in option::of(any::<u64>()),
         verdict in verdict(),
     ) -> Measurement {
-        Measurement { at_ns, name, value_ns, uncertainty_ns, limits: Limits { min_ns, max_ns }, verdict }
+        Measurement { at_ns, name: name.into(), value_ns, uncertainty_ns, limits: Limits { min_ns, max_ns }, verdict }
     }
 }
 

@@ -123,7 +123,7 @@ pub(crate) fn case(id: &str, verdict: Verdict) -> Vec<Event> {
         Event::CaseStarted(Box::new(case_started(id))),
         Event::Measurement(Box::new(Measurement {
             at_ns: 1_000_420_000,
-            name: "SDO response time".to_owned(),
+            name: "SDO response time".into(),
             value_ns: 213_000,
             uncertainty_ns: 0,
             limits: Limits {
