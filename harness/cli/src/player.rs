@@ -56,21 +56,19 @@ impl Plan {
         (self.cases.is_empty() || self.cases.iter().any(is_like)) && !self.except.contains(id)
     }
 
-    /// The suites of `library` that `device` is tested with, each with the ids of its selected cases.
-    pub fn suites<'l>(
-        &self,
-        library: &'l Library,
-        device: &'l Device,
-    ) -> Vec<(&'l Suite, Vec<String>)> {
+    /// The suites of `library` that `device` is tested with, each with the number of its selected cases.
+    pub fn suites<'l>(&self, library: &'l Library, device: &'l Device) -> Vec<(&'l Suite, usize)> {
         suites_for(&library.suites, &device.description)
             .map(|suite| {
-                let ids = suite
-                    .cases()
-                    .map(|case| case.id())
-                    .filter(|id| self.selects(id));
-                (suite, ids.collect::<Vec<String>>())
+                (
+                    suite,
+                    suite
+                        .cases()
+                        .filter(|case| self.selects(&case.id()))
+                        .count(),
+                )
             })
-            .filter(|(_, ids)| !ids.is_empty())
+            .filter(|(_, cases)| *cases > 0)
             .collect()
     }
 }

@@ -1,15 +1,12 @@
 //! `fieldproof run`
 
-use std::collections::BTreeSet;
-use std::fmt::Write;
-use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, PoisonError};
-use std::thread;
-use std::time::Instant;
+mod lanes;
+mod preview;
 
-use fieldproof_devices::UnknownFault;
-use fieldproof_record::{Event, Sink};
-use fieldproof_report::{Console, ConsoleOptions, LaneSummary, summary_text};
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+use fieldproof_report::{ConsoleOptions, LaneSummary, summary_text};
 use fieldproof_suite::model::Effect;
 use serde::Serialize;
 
@@ -18,28 +15,45 @@ use crate::complaint::Complaint;
 use crate::exit::Exit;
 use crate::library::{Device, Library};
 use crate::options::{EFFECTS, Format, RunOptions};
-use crate::player::{self, Plan};
+use crate::player::Plan;
 use crate::progress::Progress;
-use crate::reports::{LaneCases, LaneReports, Reports};
+use crate::reports::Reports;
 use crate::screen::{INK, Screen};
 use crate::{select, stop};
+use lanes::Stage;
 
-/// Plays suites against devices.
+/// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
 pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
     let library = Library::load(&options.selection)?;
     let plan = plan(options);
     select::patterns_must_match(&library, &plan)?;
     let devices = devices(&library, &plan)?;
     if options.dry_run {
-        return dry_run(&library, &devices, &plan, options, screen);
+        return preview::show(&library, &devices, &plan, options, screen);
     }
     let stop = stop::on_interrupt()?;
     let started = Instant::now();
     let reports = Reports::open(&options.reports)?;
-    let cases = devices
+    let stage = stage(&library, &devices, &plan, options, screen);
+    let lanes = lanes::play(&library, &devices, &plan, &reports, &stage, stop);
+    let (summaries, screen) = stage.leave();
+    reports.junit(lanes?)?;
+    let exit = Exit::of_run(&summaries, options.strict);
+    show_outcome(&summaries, started.elapsed(), exit, options, screen);
+    Ok(exit)
+}
+
+fn stage<'s>(
+    library: &Library,
+    devices: &[&Device],
+    plan: &Plan,
+    options: &RunOptions,
+    screen: &'s mut Screen,
+) -> Stage<'s> {
+    let suites = devices
         .iter()
-        .flat_map(|device| plan.suites(&library, device));
-    let cases: usize = cases.map(|(_, ids)| ids.len()).sum();
+        .flat_map(|device| plan.suites(library, device));
+    let cases: usize = suites.map(|(_, cases)| cases).sum();
     let text = options.format == Format::Text;
     let names: Vec<&str> = devices.iter().map(|device| device.name()).collect();
     let console = ConsoleOptions {
@@ -48,42 +62,14 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
         strict: options.strict,
         ink: INK,
     };
-    let stage = Stage {
-        shown: Mutex::new(Shown {
-            console: Console::new(&names, console),
-            screen,
-        }),
-        progress: Progress::new(
-            cases as u64,
-            text && !options.quiet && Screen::shows_progress(),
-        ),
+    let moves = text && !options.quiet && Screen::shows_progress();
+    Stage::new(
+        &names,
+        console,
+        Progress::new(cases as u64, moves),
         text,
-    };
-    let lanes = play_lanes(&library, &devices, &plan, &reports, &stage, stop);
-    stage.progress.clear();
-    let shown = stage
-        .shown
-        .into_inner()
-        .unwrap_or_else(PoisonError::into_inner);
-    reports.junit(lanes?)?;
-    let summaries = shown.console.summaries();
-    let exit = Exit::of_run(&summaries, options.strict);
-    match options.format {
-        Format::Json => shown.screen.print_json(&RunOutcome {
-            seed: options.seed,
-            strict: options.strict,
-            exit: exit.code(),
-            lanes: &summaries,
-        }),
-        Format::Text => {
-            let text = summary_text(&summaries, started.elapsed(), options.strict, INK);
-            let folder = options.reports.display();
-            shown
-                .screen
-                .print(&format!("{text}reports are in {folder}\n"));
-        }
-    }
-    Ok(exit)
+        screen,
+    )
 }
 
 #[derive(Serialize)]
@@ -92,6 +78,28 @@ struct RunOutcome<'a> {
     strict: bool,
     exit: u8,
     lanes: &'a [LaneSummary],
+}
+
+fn show_outcome(
+    lanes: &[LaneSummary],
+    wall: Duration,
+    exit: Exit,
+    options: &RunOptions,
+    screen: &mut Screen,
+) {
+    match options.format {
+        Format::Json => screen.print_json(&RunOutcome {
+            seed: options.seed,
+            strict: options.strict,
+            exit: exit.code(),
+            lanes,
+        }),
+        Format::Text => {
+            let text = summary_text(lanes, wall, options.strict, INK);
+            let folder = options.reports.display();
+            screen.print(&format!("{text}reports are in {folder}\n"));
+        }
+    }
 }
 
 fn plan(options: &RunOptions) -> Plan {
@@ -166,158 +174,4 @@ fn having<'l>(
         return Err(Complaint::unknown(what, name, &known));
     }
     Ok(having)
-}
-
-/// What all lanes show themselves on.
-struct Stage<'s> {
-    shown: Mutex<Shown<'s>>,
-    progress: Progress,
-    text: bool,
-}
-
-struct Shown<'s> {
-    console: Console,
-    screen: &'s mut Screen,
-}
-
-impl Stage<'_> {
-    fn show(&self, change: impl FnOnce(&mut Console) -> String) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        let text = change(&mut shown.console);
-        if self.text && !text.is_empty() {
-            self.progress.suspend(|| shown.screen.print(&text));
-        }
-    }
-}
-
-/// Where the events of one lane go.
-struct LaneSink<'a, 's> {
-    stage: &'a Stage<'s>,
-    lane: usize,
-    reports: LaneReports,
-}
-
-impl Sink for LaneSink<'_, '_> {
-    fn emit(&mut self, event: Event) {
-        if Console::wants(&event) {
-            if matches!(event, Event::CaseFinished(_)) {
-                self.stage.progress.step();
-            }
-            self.stage.show(|console| console.event(self.lane, &event));
-        }
-        self.reports.emit(event);
-    }
-}
-
-/// Plays every device in a thread of its own.
-fn play_lanes(
-    library: &Library,
-    devices: &[&Device],
-    plan: &Plan,
-    reports: &Reports,
-    stage: &Stage<'_>,
-    stop: &AtomicBool,
-) -> Result<Vec<LaneCases>, Complaint> {
-    let play = |lane: usize, device: &Device| -> Result<LaneCases, Complaint> {
-        let reports = reports.lane(device.name(), plan.strict)?;
-        let mut sink = LaneSink {
-            stage,
-            lane,
-            reports,
-        };
-        let played = player::play(library, device, plan, &mut sink, stop);
-        stage.show(|console| console.end(lane));
-        played.map_err(|error| no_such_behaviour(&error))?;
-        sink.reports.finish()
-    };
-    thread::scope(|scope| {
-        let play = &play;
-        let lanes: Vec<_> = devices
-            .iter()
-            .enumerate()
-            .map(|(lane, device)| scope.spawn(move || play(lane, device)))
-            .collect();
-        lanes
-            .into_iter()
-            .zip(devices)
-            .map(|(lane, device)| match lane.join() {
-                Ok(cases) => cases,
-                Err(_) => Err(Complaint::bench(format!(
-                    "the lane of {} broke down",
-                    device.name()
-                ))),
-            })
-            .collect()
-    })
-}
-
-fn no_such_behaviour(error: &UnknownFault) -> Complaint {
-    Complaint::bench(error.to_string())
-}
-
-#[derive(Serialize)]
-struct Planned<'a> {
-    device: &'a str,
-    suite: &'a str,
-    case: &'a str,
-    skipped: Option<&'a str>,
-}
-
-/// Shows what would be played.
-fn dry_run(
-    library: &Library,
-    devices: &[&Device],
-    plan: &Plan,
-    options: &RunOptions,
-    screen: &mut Screen,
-) -> Result<Exit, Complaint> {
-    let mut text = String::new();
-    let mut all = Vec::new();
-    let mut previews = Vec::new();
-    for device in devices {
-        let preview =
-            player::preview(library, device, plan).map_err(|it| no_such_behaviour(&it))?;
-        previews.push((device, preview));
-    }
-    for (device, preview) in &previews {
-        for (suite, cases) in preview {
-            let skipped = cases.iter().filter(|case| case.skipped.is_some()).count();
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{} on {}: {} to play, {skipped} to skip",
-                suite.head.suite,
-                device.name(),
-                cases.len() - skipped,
-            );
-            for case in cases {
-                match &case.skipped {
-                    Some(reason) => {
-                        let _ = writeln!(text, "  skip  {}\n        {reason}", case.id);
-                    }
-                    None if options.quiet => {}
-                    None => {
-                        let _ = writeln!(text, "  play  {}\n        {}", case.id, case.title);
-                    }
-                }
-                all.push(Planned {
-                    device: device.name(),
-                    suite: &suite.head.suite,
-                    case: &case.id,
-                    skipped: case.skipped.as_deref(),
-                });
-            }
-        }
-    }
-    match options.format {
-        Format::Json => screen.print_json(&all),
-        Format::Text => {
-            let skipped = all.iter().filter(|case| case.skipped.is_some()).count();
-            let played = all.len() - skipped;
-            screen.print(&format!(
-                "{text}\n{played} would be played, {skipped} skipped\n"
-            ));
-        }
-    }
-    Ok(Exit::Passed)
 }

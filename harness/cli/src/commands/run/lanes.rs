@@ -1,0 +1,126 @@
+//! Several lanes at once, one thread each.
+
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use fieldproof_record::{Event, Sink};
+use fieldproof_report::{Console, ConsoleOptions, LaneSummary};
+
+use crate::complaint::Complaint;
+use crate::library::{Device, Library};
+use crate::player::{self, Plan};
+use crate::progress::Progress;
+use crate::reports::{LaneCases, LaneReports, Reports};
+use crate::screen::Screen;
+
+/// What all lanes show themselves on.
+pub(super) struct Stage<'s> {
+    shown: Mutex<Shown<'s>>,
+    progress: Progress,
+    text: bool,
+}
+
+struct Shown<'s> {
+    console: Console,
+    screen: &'s mut Screen,
+}
+
+impl<'s> Stage<'s> {
+    /// For lanes of these devices. Without `text`, nothing is printed.
+    pub(super) fn new(
+        devices: &[&str],
+        options: ConsoleOptions,
+        progress: Progress,
+        text: bool,
+        screen: &'s mut Screen,
+    ) -> Stage<'s> {
+        Stage {
+            shown: Mutex::new(Shown {
+                console: Console::new(devices, options),
+                screen,
+            }),
+            progress,
+            text,
+        }
+    }
+
+    /// What the lanes came to, and the screen for others.
+    pub(super) fn leave(self) -> (Vec<LaneSummary>, &'s mut Screen) {
+        self.progress.clear();
+        let shown = self
+            .shown
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner);
+        (shown.console.summaries(), shown.screen)
+    }
+
+    fn show(&self, change: impl FnOnce(&mut Console) -> String) {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let text = change(&mut shown.console);
+        if self.text && !text.is_empty() {
+            self.progress.suspend(|| shown.screen.print(&text));
+        }
+    }
+}
+
+/// Where the events of one lane go.
+struct LaneSink<'a, 's> {
+    stage: &'a Stage<'s>,
+    lane: usize,
+    reports: LaneReports,
+}
+
+impl Sink for LaneSink<'_, '_> {
+    fn emit(&mut self, event: Event) {
+        if Console::wants(&event) {
+            if matches!(event, Event::CaseFinished(_)) {
+                self.stage.progress.step();
+            }
+            self.stage.show(|console| console.event(self.lane, &event));
+        }
+        self.reports.emit(event);
+    }
+}
+
+/// Plays every device in a thread of its own.
+pub(super) fn play(
+    library: &Library,
+    devices: &[&Device],
+    plan: &Plan,
+    reports: &Reports,
+    stage: &Stage<'_>,
+    stop: &AtomicBool,
+) -> Result<Vec<LaneCases>, Complaint> {
+    let play = |lane: usize, device: &Device| -> Result<LaneCases, Complaint> {
+        let reports = reports.lane(device.name(), plan.strict)?;
+        let mut sink = LaneSink {
+            stage,
+            lane,
+            reports,
+        };
+        let played = player::play(library, device, plan, &mut sink, stop);
+        stage.show(|console| console.end(lane));
+        played.map_err(|error| Complaint::bench(error.to_string()))?;
+        sink.reports.finish()
+    };
+    thread::scope(|scope| {
+        let play = &play;
+        let lanes: Vec<_> = devices
+            .iter()
+            .enumerate()
+            .map(|(lane, device)| scope.spawn(move || play(lane, device)))
+            .collect();
+        lanes
+            .into_iter()
+            .zip(devices)
+            .map(|(lane, device)| match lane.join() {
+                Ok(cases) => cases,
+                Err(_) => Err(Complaint::bench(format!(
+                    "the lane of {} broke down",
+                    device.name()
+                ))),
+            })
+            .collect()
+    })
+}
