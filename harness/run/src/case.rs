@@ -9,10 +9,10 @@ use fieldproof_suite::device::Instead;
 use fieldproof_suite::model::{Case, Located, NmtState, Step};
 
 use crate::excerpt::excerpt;
-use crate::restore::Undo;
 use crate::steps::{check_of, is_precondition};
 use crate::stop::{Came, Mismatch, Stop};
 use crate::tester::{SERIAL, Tester};
+use crate::undo::Undo;
 
 /// How long after the last step an answer too many is waited for.
 const SETTLE_TIME: Duration = Duration::from_millis(5);

@@ -19,11 +19,11 @@ use crate::applies::{Bench, effect_name, skip_reason};
 use crate::case::CaseOutcome;
 use crate::node::NodeWatch;
 use crate::relocate::relocate;
-use crate::restore::UndoStack;
 use crate::session::Session;
 use crate::steps::main_role;
 use crate::stop::Stop;
 use crate::tester::Tester;
+use crate::undo::UndoStack;
 use crate::value::Saved;
 
 /// Everything about a lane that does not change while it is played.

@@ -21,6 +21,7 @@ mod session;
 mod steps;
 mod stop;
 mod tester;
+mod undo;
 mod unexpected;
 mod value;
 

@@ -1,6 +1,6 @@
 //! Puts the device back as it was found: in reverse order, by procedure, whatever ended the case.
 
-use fieldproof_link::{Line, PortIndex, Stimulus};
+use fieldproof_link::Stimulus;
 use fieldproof_suite::device::Feature;
 use fieldproof_suite::model::{Case, Effect, NmtState};
 use fieldproof_wire::canopen::Multiplexer;
@@ -8,67 +8,9 @@ use fieldproof_wire::canopen::Multiplexer;
 use crate::modbus::{Answer, show_bytes};
 use crate::pdo_procedure::pdo_parameters;
 use crate::sdo::{Outcome, show_abort};
-use crate::steps::multiplexer;
 use crate::stop::{Came, Stop};
-use crate::tester::Tester;
-
-/// Something to put back.
-#[derive(Debug, Clone)]
-pub(crate) enum Undo {
-    /// An object held these bytes.
-    Object(Multiplexer, Vec<u8>),
-    /// Registers from this one on held these values.
-    Registers(u16, Vec<u16>),
-    /// The power was on.
-    PowerOn,
-    /// A condition did not hold.
-    Condition(String),
-    /// A switch stood here.
-    Setting(String, i64),
-    /// The tester's side of a port was set so.
-    Line(PortIndex, Line),
-}
-
-/// What is to be put back, last first.
-#[derive(Debug, Default)]
-pub(crate) struct UndoStack {
-    entries: Vec<Undo>,
-    closed: bool,
-}
-
-impl UndoStack {
-    pub(crate) fn push(&mut self, undo: Undo) {
-        if !self.closed {
-            self.entries.push(undo);
-        }
-    }
-
-    /// While the case's own restore steps are played, what they change is not put back in turn.
-    fn close(&mut self, closed: bool) {
-        self.closed = closed;
-    }
-
-    fn pop(&mut self) -> Option<Undo> {
-        self.entries.pop()
-    }
-
-    /// The last thing was not changed after all.
-    pub(crate) fn forget_last(&mut self) {
-        self.entries.pop();
-    }
-
-    pub(crate) fn clear(&mut self) {
-        self.entries.clear();
-    }
-
-    /// Puts `undo` back after everything else, unless its object is to be put back anyway.
-    pub(crate) fn push_last(&mut self, object: Multiplexer, bytes: Vec<u8>) {
-        let known = |undo: &Undo| matches!(undo, Undo::Object(other, _) if *other == object);
-        if !self.entries.iter().any(known) {
-            self.entries.insert(0, Undo::Object(object, bytes));
-        }
-    }
-}
+use crate::tester::{Tester, multiplexer};
+use crate::undo::Undo;
 
 /// Objects that are commands, not settings: what they read is not what was written.
 const COMMANDS: [u16; 3] = [0x1003, 0x1010, 0x1011];
@@ -81,7 +23,7 @@ impl Tester<'_> {
             .dictionary
             .and_then(|dictionary| dictionary.entry(object.index, object.sub));
         let readable = entry.is_none_or(|entry| entry.access.readable());
-        if COMMANDS.contains(&object.index) || !readable || self.undo.closed {
+        if COMMANDS.contains(&object.index) || !readable || self.undo.is_closed() {
             return Ok(None);
         }
         match self.sdo_upload(object, self.device.timing.sdo_response)? {
@@ -118,7 +60,7 @@ impl Tester<'_> {
         first: u16,
         count: u16,
     ) -> Result<Option<Vec<u16>>, Stop> {
-        if self.undo.closed {
+        if self.undo.is_closed() {
             return Ok(None);
         }
         let mut pdu = vec![0x03];

@@ -7,13 +7,14 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_link::{CompanionIndex, PortIndex};
 use fieldproof_record::{Event, Limits, Measurement, Observation, Verdict};
 use fieldproof_suite::device::{DeviceDescription, Feature};
-use fieldproof_wire::canopen::{NodeId, Service, cob_id};
+use fieldproof_suite::scalar::ObjectAddress;
+use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id};
 
 use crate::limits::{judge, nanoseconds, show};
 use crate::node::NodeWatch;
-use crate::restore::UndoStack;
 use crate::session::{Message, Received, Session};
 use crate::stop::{Came, Stop};
+use crate::undo::UndoStack;
 use crate::value::Saved;
 
 /// The port roles of suites.
@@ -151,6 +152,11 @@ impl Tester<'_> {
             value,
         })));
     }
+}
+
+/// An object of the suite language as the wire has it.
+pub(crate) const fn multiplexer(object: ObjectAddress) -> Multiplexer {
+    Multiplexer::new(object.index, object.sub)
 }
 
 /// An upper limit alone.

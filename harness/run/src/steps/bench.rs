@@ -6,9 +6,9 @@ use fieldproof_link::{Line, Stimulus, StimulusError};
 use fieldproof_record::{Event, StimulusEvent};
 use fieldproof_suite::model::{PowerAction, Stimulate};
 
-use crate::restore::Undo;
 use crate::stop::Stop;
 use crate::tester::Tester;
+use crate::undo::Undo;
 
 /// How long a power cycle keeps the power off.
 const POWER_OFF_TIME: Duration = Duration::from_secs(1);

@@ -12,7 +12,6 @@ use fieldproof_suite::model::Step;
 
 pub(crate) use frames::main_role;
 pub(crate) use nmt::wire_state;
-pub(crate) use sdo::multiplexer;
 
 use crate::stop::Stop;
 use crate::tester::Tester;

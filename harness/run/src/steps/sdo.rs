@@ -3,18 +3,13 @@
 use fieldproof_suite::model::{
     AbortExpectation, ReadExpectation, SdoRead, SdoWrite, WriteExpectation,
 };
-use fieldproof_suite::scalar::ObjectAddress;
 use fieldproof_wire::canopen::{AbortCode, Multiplexer};
 
 use crate::modbus::show_bytes;
 use crate::sdo::{Outcome, show_abort};
 use crate::stop::{Came, Stop};
-use crate::tester::Tester;
+use crate::tester::{Tester, multiplexer};
 use crate::value::{Actual, Saved, decode, encode, resolve, size};
-
-pub(crate) const fn multiplexer(object: ObjectAddress) -> Multiplexer {
-    Multiplexer::new(object.index, object.sub)
-}
 
 impl Tester<'_> {
     pub(super) fn sdo_read(&mut self, step: &SdoRead) -> Result<(), Stop> {

@@ -1,0 +1,67 @@
+//! What a case has changed, last first.
+
+use fieldproof_link::{Line, PortIndex};
+use fieldproof_wire::canopen::Multiplexer;
+
+/// Something to put back.
+#[derive(Debug, Clone)]
+pub(crate) enum Undo {
+    /// An object held these bytes.
+    Object(Multiplexer, Vec<u8>),
+    /// Registers from this one on held these values.
+    Registers(u16, Vec<u16>),
+    /// The power was on.
+    PowerOn,
+    /// A condition did not hold.
+    Condition(String),
+    /// A switch stood here.
+    Setting(String, i64),
+    /// The tester's side of a port was set so.
+    Line(PortIndex, Line),
+}
+
+/// What is to be put back, last first.
+#[derive(Debug, Default)]
+pub(crate) struct UndoStack {
+    entries: Vec<Undo>,
+    closed: bool,
+}
+
+impl UndoStack {
+    pub(crate) fn push(&mut self, undo: Undo) {
+        if !self.closed {
+            self.entries.push(undo);
+        }
+    }
+
+    /// Whether what is changed now is not put back in turn.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// While the case's own restore steps are played, what they change is not put back in turn.
+    pub(crate) fn close(&mut self, closed: bool) {
+        self.closed = closed;
+    }
+
+    pub(crate) fn pop(&mut self) -> Option<Undo> {
+        self.entries.pop()
+    }
+
+    /// The last thing was not changed after all.
+    pub(crate) fn forget_last(&mut self) {
+        self.entries.pop();
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Puts `undo` back after everything else, unless its object is to be put back anyway.
+    pub(crate) fn push_last(&mut self, object: Multiplexer, bytes: Vec<u8>) {
+        let known = |undo: &Undo| matches!(undo, Undo::Object(other, _) if *other == object);
+        if !self.entries.iter().any(known) {
+            self.entries.insert(0, Undo::Object(object, bytes));
+        }
+    }
+}
