@@ -11,6 +11,17 @@ pub struct Position {
     pub end_column: u32,
 }
 
+/// The longest message, in characters. Messages repeat texts of the file, and those may be of any length.
+const LONGEST_MESSAGE: usize = 300;
+
+/// A message that is no longer than people read.
+pub(crate) fn shorten(message: String) -> String {
+    match message.char_indices().nth(LONGEST_MESSAGE) {
+        Some((end, _)) => format!("{} ...", &message[..end]),
+        None => message,
+    }
+}
+
 /// How bad it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {

@@ -9,6 +9,7 @@
 //! | `{device_type}` | the value that an earlier step saved; only where a value stands |
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use crate::problem::{Problem, with_nearest};
@@ -28,6 +29,9 @@ pub struct Environment {
 /// The names that the bench gives; no column may have one.
 pub(crate) const BENCH_NAMES: [&str; 2] = ["node", "address"];
 
+/// The longest text that placeholders may make, in bytes.
+const LONGEST_TEXT: usize = 16 << 10;
+
 /// What the placeholders of a case stand for.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Scope<'a> {
@@ -38,6 +42,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) saved: BTreeSet<String>,
     /// The names that later steps of the case save.
     pub(crate) saved_later: BTreeSet<String>,
+    /// How much may still be read, so that a few long cells used many times do not fill the memory.
+    pub(crate) reads: Option<&'a Cell<u64>>,
 }
 
 /// How a number is written where it replaces a placeholder.
@@ -64,8 +70,13 @@ pub(crate) struct Placeholder<'t> {
 /// The placeholders in a text, in order. Braces around anything else are ordinary text.
 pub(crate) fn placeholders(text: &str) -> impl Iterator<Item = Placeholder<'_>> {
     text.match_indices('{').filter_map(|(start, _)| {
-        let end = start + text[start..].find('}')?;
-        let inside = &text[start + 1..end];
+        let inside = &text[start + 1..];
+        let length = inside.find(|c: char| !(c.is_ascii_alphanumeric() || "+:_-".contains(c)))?;
+        let end = start + 1 + length;
+        if !text[end..].starts_with('}') {
+            return None;
+        }
+        let inside = &inside[..length];
         let (rest, format) = match inside.split_once(':') {
             Some((rest, format)) => (rest, Some(format)),
             None => (inside, None),
@@ -103,6 +114,19 @@ pub(crate) fn whole(text: &str) -> Option<&str> {
 }
 
 impl<'a> Scope<'a> {
+    /// Takes note that something of this size is read.
+    pub(crate) fn spend(&self, reads: u64) -> Result<(), Box<Problem>> {
+        let Some(left) = self.reads else {
+            return Ok(());
+        };
+        left.set(left.get().saturating_sub(reads));
+        if left.get() > 0 {
+            return Ok(());
+        }
+        let message = "this case is too large with this row of its table";
+        Err(Problem::new(code::TOO_LARGE, message, "too much"))
+    }
+
     /// The cell that stands for `node`, if `node` is one plain `{column}`.
     pub(crate) fn cell(&self, node: &Node) -> Option<&'a Node> {
         self.row?.get(whole(node.text()?)?)
@@ -131,7 +155,12 @@ impl<'a> Scope<'a> {
             replaced.push_str(&text[done..start]);
             replaced.push_str(&self.value(placeholder, notation, in_cell)?);
             done = end;
+            if replaced.len() > LONGEST_TEXT {
+                let message = format!("this text becomes longer than {LONGEST_TEXT} bytes");
+                return Err(Problem::new(code::TOO_LARGE, message, "too long"));
+            }
         }
+        self.spend(replaced.len() as u64 / 8)?;
         replaced.push_str(&text[done..]);
         Ok(Cow::Owned(replaced))
     }
@@ -316,6 +345,7 @@ mod tests {
             },
             saved: BTreeSet::from(["kept".to_owned()]),
             saved_later: BTreeSet::from(["later".to_owned()]),
+            reads: None,
         };
         let replaced = scope.replace(text, notation, false);
         replaced

@@ -13,6 +13,7 @@ mod documented;
 mod expand;
 mod file;
 mod forms;
+mod lines;
 mod load;
 pub mod model;
 mod problem;

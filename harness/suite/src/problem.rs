@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::diagnostic::shorten;
 use crate::{Diagnostic, Position, Severity, code};
 
 /// A mistake. Boxed where it travels, for it is large and rare.
@@ -68,7 +69,7 @@ impl Problem {
             },
             path: path.to_owned(),
             at: self.at.unwrap_or_default(),
-            message: self.message,
+            message: shorten(self.message),
             label: self.label,
             also,
             help: self.help,

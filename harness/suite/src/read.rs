@@ -371,6 +371,7 @@ impl<'de> SeqAccess<'de> for ListAccess<'_> {
             return Ok(None);
         };
         let reader = self.list.inside(node, node.at);
+        reader.placed(self.list.scope.spend(1).map_err(ReadError))?;
         reader.placed(seed.deserialize(reader)).map(Some)
     }
 }
@@ -425,6 +426,7 @@ impl<'de> MapAccess<'de> for EntriesAccess<'_> {
         match self.value.take() {
             Some(entry) => {
                 let reader = self.map.inside(&entry.value, entry.key.at);
+                reader.placed(self.map.scope.spend(1).map_err(ReadError))?;
                 reader.placed(seed.deserialize(reader))
             }
             None => Err(ReadError::custom("a value without a key")),

@@ -8,6 +8,8 @@ use std::sync::Arc;
 
 use saphyr_parser::{Event, Parser, ScalarStyle, ScanError, Span};
 
+use crate::diagnostic::shorten;
+use crate::lines::Lines;
 use crate::{Diagnostic, Position, Severity, code};
 
 /// The longest text, in bytes.
@@ -132,6 +134,10 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Node, Vec<Diagnostic>> {
     builder.finish()
 }
 
+fn too_deep() -> String {
+    format!("lists and maps are nested more than {DEEPEST} deep")
+}
+
 fn error(
     path: &str,
     code: &'static str,
@@ -144,7 +150,7 @@ fn error(
         severity: Severity::Error,
         path: path.to_owned(),
         at,
-        message: message.into(),
+        message: shorten(message.into()),
         label: label.into(),
         also: Vec::new(),
         help: None,
@@ -159,7 +165,8 @@ enum Open {
 
 struct Builder<'a> {
     path: &'a str,
-    lines: Vec<&'a str>,
+    text: &'a str,
+    lines: Lines,
     open: Vec<Open>,
     root: Option<Node>,
     nodes: usize,
@@ -174,7 +181,8 @@ impl<'a> Builder<'a> {
     fn new(path: &'a str, text: &'a str) -> Builder<'a> {
         Builder {
             path,
-            lines: text.lines().collect(),
+            text,
+            lines: Lines::of(text),
             open: Vec::new(),
             root: None,
             nodes: 0,
@@ -196,7 +204,7 @@ impl<'a> Builder<'a> {
 
     /// YAML forbids tabs for indentation; what a parser says of them helps nobody.
     fn tabs(&mut self) {
-        for (number, line) in self.lines.iter().enumerate() {
+        for (number, line) in self.text.lines().enumerate() {
             let indentation = line.len() - line.trim_start_matches([' ', '\t']).len();
             if let Some(tab) = line[..indentation].find('\t') {
                 let at = Position {
@@ -220,7 +228,7 @@ impl<'a> Builder<'a> {
 
     /// YAML ends a line at a carriage return alone, nobody else does; lines would not be where people see them.
     fn line_ends(&mut self) {
-        for (number, line) in self.lines.iter().enumerate() {
+        for (number, line) in self.text.lines().enumerate() {
             if let Some(before) = line.split_once('\r').map(|(before, _)| before) {
                 let column = before.chars().count() as u32 + 1;
                 let at = Position {
@@ -294,8 +302,7 @@ impl<'a> Builder<'a> {
             );
         }
         if self.open.len() == DEEPEST {
-            let message = format!("lists and maps are nested more than {DEEPEST} deep");
-            return self.stop(code::TOO_DEEP, at, message, "");
+            return self.stop(code::TOO_DEEP, at, too_deep(), "");
         }
         self.open.push(open);
         Ok(())
@@ -426,9 +433,10 @@ impl<'a> Builder<'a> {
             format!("this is not YAML: {}", scan.info()),
             "",
         );
-        let line = scan.marker().line().checked_sub(1);
-        let line = line.and_then(|index| self.lines.get(index)).copied();
-        let line = line.unwrap_or_default();
+        if scan.info().contains("recursion limit") {
+            return Box::new(error(self.path, code::TOO_DEEP, at, too_deep(), ""));
+        }
+        let line = self.lines.line(self.text, scan.marker().line());
         if line.contains('{') {
             problem.help = Some("a text that starts with `{` must stand in quotes".to_owned());
         } else if line.matches(": ").count() > 1 {
@@ -478,8 +486,8 @@ impl<'a> Builder<'a> {
     }
 
     fn end_of(&self, line: usize) -> u32 {
-        let text = line.checked_sub(1).and_then(|index| self.lines.get(index));
-        text.map_or(1, |text| text.trim_end().chars().count() as u32 + 1)
+        let line = self.lines.line(self.text, line);
+        line.trim_end().chars().count() as u32 + 1
     }
 }
 

@@ -162,3 +162,98 @@ fn a_saved_value_stands_where_a_value_stands() {
     );
     assert_eq!(steps[3], Step::StopSync);
 }
+
+#[test]
+fn a_mistake_in_one_row_is_shown_there_and_one_in_all_rows_in_the_case() {
+    let loaded = load_text(&suite(
+        "  - case: rows
+    title: Rows
+    cite: cia301
+    each:
+      - {word: start, data: '00'}
+      - {word: strat, data: '01'}
+    steps:
+      - nmt: \"{word}\"
+      - send: \"60#{data}\"
+      - sdo-read: {object: \"{data}\", as: u8}
+      - sdo-raed: {object: \"1000:00\", as: u8}
+",
+    ));
+    let found: Vec<_> = loaded
+        .diagnostics
+        .iter()
+        .map(|one| {
+            (
+                one.code,
+                one.at.line,
+                one.also.first().map(|also| also.0.line),
+            )
+        })
+        .collect();
+    assert_eq!(
+        found,
+        [
+            ("S015", 14, Some(16)),
+            ("S024", 17, Some(13)),
+            ("S023", 18, Some(13)),
+            ("S013", 19, None),
+        ]
+    );
+    assert!(loaded.suites.is_empty());
+}
+
+#[test]
+fn tables_that_explode_are_refused() {
+    let table = |cell: &str, steps: &str| {
+        load_text(&suite(&format!(
+            "  - case: bomb
+    title: Bomb
+    cite: cia301
+    each:
+      - {{n: 1, cell: {cell}}}
+    steps:
+{steps}"
+        )))
+    };
+    let long = table(
+        &"0".repeat(10_000),
+        &format!("      - send: \"{}\"\n", "{cell}".repeat(10_000)),
+    );
+    assert_eq!(long.diagnostics[0].code, "S006");
+    let step = "      - sdo-read: {object: \"1000:00\", as: u32, expect: {one-of: \"{cell}\"}}\n";
+    let many = table(&format!("[{}1]", "1,".repeat(10_000)), &step.repeat(200));
+    assert!(many.diagnostics.iter().any(|one| one.code == "S006"));
+    let text = "x".repeat(10_000);
+    let rows = (0..100).map(|number| format!("      - {{n: {number}, text: {text}}}\n"));
+    let rows: String = rows.collect();
+    let step = "      - sdo-read: {object: \"1000:00\", as: u32, observe: \"{n} {text}\"}\n";
+    let all = load_text(&suite(&format!(
+        "  - case: bomb\n    title: Bomb\n    cite: cia301\n    each:\n{rows}    steps:\n{}",
+        step.repeat(200)
+    )));
+    assert!(all.diagnostics.iter().any(|one| one.code == "S006"));
+}
+
+#[test]
+fn what_depends_on_the_bench_is_found_when_the_case_is_asked_for() {
+    let text = suite(
+        "  - case: high
+    title: An identifier near the end
+    cite: cia301
+    steps:
+      - send: \"{780+node}#00\"
+      - expect-silence: 10 ms
+",
+    );
+    let loaded = load_text(&text);
+    assert_eq!(shown(&loaded.diagnostics), Vec::<String>::new());
+    let case = loaded.suites[0].cases().next().unwrap();
+    assert!(case.lower(&NODE_1).is_ok());
+    let last = Environment {
+        node: Some(127),
+        address: None,
+    };
+    assert!(case.lower(&last).is_ok());
+    let none = case.lower(&Environment::default()).unwrap_err();
+    assert_eq!((none[0].code, none[0].at.line), ("S034", 13));
+}

@@ -1,5 +1,6 @@
 //! One row of one case into a [`Case`].
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
@@ -13,6 +14,9 @@ use crate::model::{Case, Citation, Located, Restore, Source, Step};
 use crate::problem::{Problem, ReadError, with_nearest};
 use crate::read::Reader;
 use crate::yaml::{Kind, Node};
+
+/// The most values that are read for one case.
+pub(super) const MOST_READS: u64 = 1_000_000;
 
 /// `[from=operational,command=stop]`
 pub(super) fn row_key(row: &Node, columns: &[String]) -> String {
@@ -35,7 +39,13 @@ fn in_id(text: &str) -> String {
 }
 
 /// The case, or everything that is wrong with it.
-pub(super) fn read(case: CaseRef<'_>, environment: &Environment) -> Result<Case, Vec<Problem>> {
+///
+/// `reads` is how much may still be read; see [`Scope`].
+pub(super) fn read<'a>(
+    case: CaseRef<'a>,
+    environment: &Environment,
+    reads: &'a Cell<u64>,
+) -> Result<Case, Vec<Problem>> {
     let body = &case.template.body;
     let mut problems = Vec::new();
     let mut scope = Scope {
@@ -43,6 +53,7 @@ pub(super) fn read(case: CaseRef<'_>, environment: &Environment) -> Result<Case,
         environment: *environment,
         saved: BTreeSet::new(),
         saved_later: BTreeSet::new(),
+        reads: Some(reads),
     };
     let file = CaseFile::deserialize(Reader::new(body, &scope, case.template.at));
     let mut steps = Steps {
@@ -160,10 +171,15 @@ impl<'a> Steps<'_, 'a> {
             let problem = Problem::new(code::EMPTY, "no steps", "expected at least one step");
             self.problems.push(*problem.at(list.at));
         }
-        elements
-            .iter()
-            .filter_map(|element| self.step(element))
-            .collect()
+        let mut steps = Vec::new();
+        for element in elements {
+            if let Err(problem) = self.scope.spend(1) {
+                self.problems.push(*problem.at(element.at));
+                break;
+            }
+            steps.extend(self.step(element));
+        }
+        steps
     }
 
     fn step(&mut self, node: &'a Node) -> Option<Located<Step>> {

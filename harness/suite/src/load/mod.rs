@@ -4,13 +4,16 @@
 mod case;
 mod check;
 mod device;
+mod rows;
 mod suite;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 pub use device::load_device;
 
 use crate::expand::Environment;
+use crate::lines::Lines;
 use crate::model::{Case, SuiteHead};
 use crate::yaml::Node;
 use crate::{Diagnostic, Position, Severity};
@@ -41,8 +44,7 @@ pub struct Suite {
     /// The path of its file.
     pub path: String,
     text: String,
-    /// Where each line starts in `text`.
-    lines: Vec<usize>,
+    lines: Lines,
     cases: Vec<CaseTemplate>,
 }
 
@@ -86,11 +88,10 @@ pub fn load(files: &[SourceFile]) -> Loaded {
 
 impl Suite {
     fn new(head: SuiteHead, file: &SourceFile, cases: Vec<CaseTemplate>) -> Suite {
-        let starts = file.text.match_indices('\n').map(|(end, _)| end + 1);
         Suite {
             head,
             path: file.path.clone(),
-            lines: std::iter::once(0).chain(starts).collect(),
+            lines: Lines::of(&file.text),
             text: file.text.clone(),
             cases,
         }
@@ -111,14 +112,7 @@ impl Suite {
 
     /// The text of a line of its file, counted from 1; empty if there is no such line.
     pub fn line_text(&self, line: u32) -> &str {
-        let number = line as usize;
-        let start = number
-            .checked_sub(1)
-            .and_then(|index| self.lines.get(index))
-            .copied();
-        let end = self.lines.get(number).copied().unwrap_or(self.text.len());
-        let text = start.and_then(|start| self.text.get(start..end));
-        text.unwrap_or_default().trim_end_matches(['\r', '\n'])
+        self.lines.line(&self.text, line as usize)
     }
 }
 
@@ -153,7 +147,8 @@ impl<'a> CaseRef<'a> {
     /// What cannot be read with this environment: a frame that is none with this node-ID, a `{node}` where the device
     /// has none.
     pub fn lower(&self, environment: &Environment) -> Result<Case, Vec<Diagnostic>> {
-        case::read(*self, environment).map_err(|problems| {
+        let reads = Cell::new(case::MOST_READS);
+        case::read(*self, environment, &reads).map_err(|problems| {
             let into_diagnostic =
                 |problem: crate::problem::Problem| problem.into_diagnostic(&self.suite.path);
             problems.into_iter().map(into_diagnostic).collect()

@@ -4,18 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
 
-use super::{CaseRef, CaseTemplate, SourceFile, Suite, case};
-use crate::expand::{BENCH_NAMES, Environment, Scope, is_name, placeholders};
+use super::rows::RowCheck;
+use super::{CaseTemplate, SourceFile, Suite, case};
+use crate::expand::{BENCH_NAMES, Scope, is_name, placeholders};
 use crate::file::SuiteFile;
 use crate::forms::OneOrMany;
-use crate::model::{Located, Protocol, SuiteHead};
+use crate::model::{Located, SuiteHead};
 use crate::problem::{Problem, with_nearest};
 use crate::read::Reader;
 use crate::yaml::{self, Entry, Kind, Node};
 use crate::{Diagnostic, Position, code};
-
-/// The most diagnostics that one case gives; more of them help nobody.
-const MOST_OF_A_CASE: usize = 50;
 
 /// The suite in `file`, as far as it can be read, and what is wrong. `names` are the suites so far, with their places.
 pub(super) fn read(
@@ -29,8 +27,9 @@ pub(super) fn read(
     let mut problems = Vec::new();
     let suite = read_root(file, root, names, &mut problems);
     if let Some(suite) = &suite {
+        let mut check = RowCheck::new(suite);
         for template in &suite.cases {
-            check_rows(suite, template, &mut problems);
+            check.case(template, &mut problems);
         }
     }
     let diagnostics = problems
@@ -375,58 +374,6 @@ fn collect_names<'a>(node: &'a Node, names: &mut BTreeSet<&'a str>) {
             for entry in entries {
                 collect_names(&entry.value, names);
             }
-        }
-    }
-}
-
-/// Reads every row once, for its mistakes.
-fn check_rows(suite: &Suite, template: &CaseTemplate, problems: &mut Vec<Problem>) {
-    let environment = Environment {
-        node: (suite.head.protocol != Protocol::Modbus).then_some(1),
-        address: (suite.head.protocol != Protocol::Canopen).then_some(1),
-    };
-    let rows: Vec<Option<&Node>> = match template.rows.is_empty() {
-        true => vec![None],
-        false => template.rows.iter().map(Some).collect(),
-    };
-    let mut found = Vec::new();
-    let mut failures: BTreeMap<(&'static str, Position), usize> = BTreeMap::new();
-    for row in &rows {
-        let case = CaseRef {
-            suite,
-            template,
-            row: *row,
-        };
-        for problem in case::read(case, &environment).err().unwrap_or_default() {
-            if template.without_rows && problem.code == code::UNKNOWN_PLACEHOLDER {
-                continue;
-            }
-            if let Some(template) = problem.template {
-                *failures.entry((problem.code, template)).or_default() += 1;
-            }
-            found.push(problem);
-        }
-    }
-    let in_every_row = |problem: &Problem| {
-        let template = problem.template?;
-        let count = failures.get(&(problem.code, template));
-        (rows.len() > 1 && count == Some(&rows.len())).then_some(template)
-    };
-    let mut shown = BTreeSet::new();
-    for mut problem in found {
-        // Where every row fails, the case is wrong and not the rows.
-        if let Some(template) = in_every_row(&problem) {
-            let cell = problem.at.replace(template);
-            problem.template = None;
-            let cell = cell.map(|cell| (cell, "with this, for one".to_owned()));
-            problem.also.extend(cell);
-        }
-        let message = match problem.template {
-            Some(_) => problem.message.clone(),
-            None => String::new(),
-        };
-        if shown.len() < MOST_OF_A_CASE && shown.insert((problem.code, problem.at, message)) {
-            problems.push(problem);
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::file::{ExpectTpdoFile, SyncFile};
 use crate::read_with::{optional_node, optional_time, pdo_data, pdo_number, ten, time};
 use crate::scalar::{BytePatternText, Bytes, Time, Tolerance};
 
-/// See [`Step::Nmt`]. Short form: the command alone.
+/// Sends an NMT command. Short form: the command alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Nmt {
@@ -61,7 +61,7 @@ pub enum NmtState {
     Stopped,
 }
 
-/// See [`Step::ExpectState`].
+/// Expects an NMT state.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ExpectState {
@@ -76,7 +76,7 @@ pub struct ExpectState {
     pub check: Option<String>,
 }
 
-/// See [`Step::ExpectBootUp`]. Short form: the duration alone.
+/// Expects the boot-up message. Short form: the duration alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ExpectBootUp {
@@ -90,7 +90,7 @@ pub struct ExpectBootUp {
     pub node: Option<u8>,
 }
 
-/// See [`Step::ExpectHeartbeat`].
+/// Expects heartbeats and measures them.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ExpectHeartbeat {
@@ -119,7 +119,7 @@ pub enum Judge {
     Median,
 }
 
-/// See [`Step::Sync`]. Short form: nothing, for one SYNC.
+/// Sends SYNC messages. Short form: nothing, for one SYNC.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "SyncFile")]
 pub struct Sync {
@@ -129,7 +129,7 @@ pub struct Sync {
     pub period: Duration,
 }
 
-/// See [`Step::StartSync`].
+/// Starts a SYNC producer.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct StartSync {
@@ -139,7 +139,7 @@ pub struct StartSync {
     pub period: Duration,
 }
 
-/// See [`Step::ExpectTpdo`].
+/// Expects a transmit PDO.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "ExpectTpdoFile")]
 pub struct ExpectTpdo {
@@ -161,7 +161,7 @@ pub struct ExpectTpdo {
     pub check: Option<String>,
 }
 
-/// See [`Step::SendRpdo`].
+/// Sends a receive PDO.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct SendRpdo {

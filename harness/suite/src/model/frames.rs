@@ -12,7 +12,7 @@ use crate::scalar::{
     BytePatternText, Bytes, CanId, Decimal, FrameText, ObjectAddress, PatternText, Time,
 };
 
-/// See [`Step::Send`]. Short form: the frame alone.
+/// Sends a CAN frame. Short form: the frame alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Send {
@@ -20,7 +20,7 @@ pub struct Send {
     pub frame: FrameText,
 }
 
-/// See [`Step::Expect`]. Short form: the frame alone.
+/// Expects a CAN frame. Short form: the frame alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Expect {
@@ -39,7 +39,7 @@ pub struct Expect {
     pub check: Option<String>,
 }
 
-/// See [`Step::ExpectSilence`]. Short form: the duration alone.
+/// Expects that nothing arrives. Short form: the duration alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ExpectSilence {
@@ -59,7 +59,7 @@ pub struct ExpectSilence {
     pub check: Option<String>,
 }
 
-/// See [`Step::SendBytes`]. Short form: the bytes alone, CRC given.
+/// Sends bytes on a serial port. Short form: the bytes alone, CRC given.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct SendBytes {
@@ -89,7 +89,7 @@ pub enum Crc {
     FlipBit(u32),
 }
 
-/// See [`Step::ExpectBytes`]. Short form: the bytes alone.
+/// Expects bytes on a serial port. Short form: the bytes alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ExpectBytes {

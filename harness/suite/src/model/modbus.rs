@@ -10,7 +10,7 @@ use crate::forms::OneOrMany;
 use crate::read_with::exceptions;
 use crate::scalar::{BytePatternText, Bytes, Number};
 
-/// See [`Step::Modbus`]: one request and what must come back.
+/// A Modbus request and what must come back.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "ModbusFile")]
 pub struct Modbus {

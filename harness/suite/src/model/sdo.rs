@@ -8,7 +8,7 @@ use super::ValueType;
 use crate::file::{SdoReadFile, SdoWriteFile};
 use crate::scalar::{ObjectAddress, Value};
 
-/// See [`Step::SdoRead`].
+/// Reads an object.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "SdoReadFile")]
 pub struct SdoRead {
@@ -58,7 +58,7 @@ pub struct AbortExpectation {
     pub strict: Option<u32>,
 }
 
-/// See [`Step::SdoWrite`].
+/// Writes an object.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "SdoWriteFile")]
 pub struct SdoWrite {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use crate::file::StimulateFile;
 
-/// See [`Step::Stimulate`].
+/// What the bench does to the device.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "StimulateFile")]
 pub enum Stimulate {
