@@ -120,6 +120,14 @@ impl Lane {
     fn event(&mut self, event: &Event, options: ConsoleOptions, name_width: usize) {
         self.summary.event(event);
         match event {
+            Event::LaneStarted(lane) if !options.quiet => {
+                if let Some(fault) = &lane.fault {
+                    say(
+                        &mut self.kept,
+                        format_args!("{} has the fault {fault}\n", lane.device),
+                    );
+                }
+            }
             Event::CaseStarted(case) => self.case = Some(case.clone()),
             Event::CaseFinished(finished) => {
                 if let Some(started) = self.case.take() {
@@ -184,19 +192,17 @@ fn suite_line(device: &str, name_width: usize, suite: &SuiteSummary, ink: Ink) -
     let counts = suite.counts;
     let time = short_seconds(suite.lane_time_ns);
     let mut line = format!(
-        "{device:<name_width$}  {:<36} {:>5} {:<5} {time:>13}  {:>5} pass",
+        "{device:<name_width$}  {:<36} {:>5} {:<5} {time:>13}",
         suite.suite,
         counts.total(),
         if counts.total() == 1 { "case" } else { "cases" },
-        counts.pass
     );
-    for verdict in Verdict::ALL
-        .into_iter()
-        .filter(|verdict| *verdict != Verdict::Pass)
-    {
+    let mut before = "  ";
+    for verdict in Verdict::ALL {
         if counts.of(verdict) > 0 {
-            let words = ink.verdict(verdict, format_args!("{} {verdict}", counts.of(verdict)));
-            say(&mut line, format_args!(", {words}"));
+            let words = ink.verdict(verdict, format_args!("{:>5} {verdict}", counts.of(verdict)));
+            say(&mut line, format_args!("{before}{words}"));
+            before = ",";
         }
     }
     line.push('\n');

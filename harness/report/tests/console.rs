@@ -119,6 +119,17 @@ fn lanes_side_by_side_are_shown_one_after_the_other() {
 }
 
 #[test]
+fn fault_that_is_switched_on_is_named() {
+    let mut console = Console::new(&["drive"], ConsoleOptions::default());
+    let Event::LaneStarted(mut start) = support::lane_started("drive") else {
+        unreachable!("the first event of a lane");
+    };
+    start.fault = Some("boot-up-missing".to_owned());
+    let text = console.event(0, &Event::LaneStarted(start));
+    assert_eq!(text, "drive has the fault boot-up-missing\n");
+}
+
+#[test]
 fn run_in_which_all_is_skipped_has_not_passed() {
     let text = shown(&["drive"], ConsoleOptions::default(), &[Verdict::Skipped]);
     assert!(text.contains("nothing was played"), "{text}");

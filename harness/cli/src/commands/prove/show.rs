@@ -94,7 +94,7 @@ fn round(text: &mut String, finding: &Finding) {
     }
     if let Some(first) = finding.stops.first() {
         let times = finding.stops.len();
-        parts.push(format!("taken afresh {times} times: {first}"));
+        parts.push(format!("fresh devices taken: {times} ({first})"));
     }
     let mut parts = parts.into_iter();
     let first = parts.next().unwrap_or_default();
