@@ -90,8 +90,8 @@ codes! {
     NEVER_FAILS = "S041";
     /// An expectation that can never be met.
     NEVER_MET = "S042";
-    /// An effect that is not declared.
-    UNDECLARED_EFFECT = "S043";
+    /// An effect or a stimulus that is not declared.
+    UNDECLARED = "S043";
     /// A verb that the suite's protocol does not have.
     WRONG_PROTOCOL = "S044";
 

@@ -12,9 +12,9 @@ use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 
+use crate::node::{Kind, Node};
 use crate::problem::{Problem, with_nearest};
 use crate::scalar::whole_number;
-use crate::yaml::{Kind, Node};
 use crate::{Position, code};
 
 /// What the bench gives a case.

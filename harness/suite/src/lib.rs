@@ -16,6 +16,7 @@ mod forms;
 mod lines;
 mod load;
 pub mod model;
+mod node;
 mod problem;
 mod read;
 mod read_with;

@@ -143,7 +143,8 @@ fn or_placeholder(schema: &mut Value) {
 mod tests {
     use super::*;
     use crate::documented::documented_files;
-    use crate::yaml::{self, Kind, Node};
+    use crate::node::{Kind, Node};
+    use crate::yaml;
 
     /// As an editor sees it, which types scalars by the core schema of YAML.
     fn as_json(node: &Node) -> Value {

@@ -7,6 +7,7 @@ mod modbus;
 mod sdo;
 mod short;
 mod stimulate;
+mod value;
 
 pub(crate) use can::*;
 pub(crate) use case::*;

@@ -82,38 +82,49 @@ pub(crate) struct WriteMultiple {
     values: Vec<Number>,
 }
 
+impl ModbusFile {
+    /// The one request of the step.
+    fn request(&self) -> Result<ModbusRequest, Wrong> {
+        let read_holding = self.read_holding.as_ref();
+        let read_input = self.read_input.as_ref();
+        let write_single = self.write_single.as_ref();
+        let write_multiple = self.write_multiple.as_ref();
+        let requests = [
+            read_holding.map(|read| ModbusRequest::ReadHolding {
+                address: read.address,
+                count: read.count,
+            }),
+            read_input.map(|read| ModbusRequest::ReadInput {
+                address: read.address,
+                count: read.count,
+            }),
+            write_single.map(|write| ModbusRequest::WriteSingle {
+                address: write.address,
+                value: write.value.clone(),
+            }),
+            write_multiple.map(|write| ModbusRequest::WriteMultiple {
+                address: write.address,
+                values: write.values.clone(),
+            }),
+            self.pdu.clone().map(ModbusRequest::Pdu),
+        ];
+        let mut requests = requests.into_iter().flatten();
+        match (requests.next(), requests.next()) {
+            (Some(request), None) => Ok(request),
+            _ => Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                "a `modbus` step has one request",
+                "expected one of `read-holding`, `read-input`, `write-single`, `write-multiple`, `pdu`",
+            )),
+        }
+    }
+}
+
 impl TryFrom<ModbusFile> for Modbus {
     type Error = Wrong;
 
     fn try_from(file: ModbusFile) -> Result<Modbus, Wrong> {
-        let requests = [
-            file.read_holding.map(|read| ModbusRequest::ReadHolding {
-                address: read.address,
-                count: read.count,
-            }),
-            file.read_input.map(|read| ModbusRequest::ReadInput {
-                address: read.address,
-                count: read.count,
-            }),
-            file.write_single.map(|write| ModbusRequest::WriteSingle {
-                address: write.address,
-                value: write.value,
-            }),
-            file.write_multiple
-                .map(|write| ModbusRequest::WriteMultiple {
-                    address: write.address,
-                    values: write.values,
-                }),
-            file.pdu.map(ModbusRequest::Pdu),
-        ];
-        let mut requests = requests.into_iter().flatten();
-        let (Some(request), None) = (requests.next(), requests.next()) else {
-            return Err(Wrong::new(
-                code::KEYS_TOGETHER,
-                "a `modbus` step has one request",
-                "expected one of `read-holding`, `read-input`, `write-single`, `write-multiple`, `pdu`",
-            ));
-        };
+        let request = file.request()?;
         check_registers(&request)?;
         if let ModbusExpectation::Registers(values) = &file.expect {
             check_words(values)?;

@@ -1,7 +1,7 @@
 //! One row of one case into a [`Case`].
 
 use std::cell::Cell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
@@ -11,9 +11,9 @@ use crate::expand::{Environment, Scope, is_name};
 use crate::file::{CaseFile, CiteFile};
 use crate::forms::{Either, OneOrMany};
 use crate::model::{Case, Citation, Located, Restore, Source, Step};
+use crate::node::{Kind, Node};
 use crate::problem::{Problem, ReadError, with_nearest};
 use crate::read::Reader;
-use crate::yaml::{Kind, Node};
 
 /// The most values that are read for one case.
 pub(super) const MOST_READS: u64 = 1_000_000;
@@ -51,9 +51,8 @@ pub(super) fn read<'a>(
     let mut scope = Scope {
         row: case.row,
         environment: *environment,
-        saved: BTreeSet::new(),
-        saved_later: BTreeSet::new(),
         reads: Some(reads),
+        ..Scope::default()
     };
     let file = CaseFile::deserialize(Reader::new(body, &scope, case.template.at));
     let mut steps = Steps {

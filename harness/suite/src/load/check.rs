@@ -4,8 +4,8 @@
 use super::CaseTemplate;
 use crate::code;
 use crate::model::{
-    Case, Effect, Located, ModbusRequest, NmtAddress, NmtCommand, PowerAction, Protocol, Step,
-    Stimulate, SuiteHead,
+    Case, Effect, Located, ModbusRequest, Need, NmtAddress, NmtCommand, PowerAction, Protocol,
+    Step, Stimulate, StimulusName, SuiteHead,
 };
 use crate::problem::Problem;
 
@@ -16,6 +16,28 @@ pub(super) fn case(
     template: &CaseTemplate,
     problems: &mut Vec<Problem>,
 ) {
+    check_head(case, template, problems);
+    let mut something_was_sent = false;
+    for step in case.control.iter().chain(&case.steps) {
+        if !something_was_sent && needs_a_cause(head.protocol, &step.value) {
+            let problem = Problem::new(
+                code::NEVER_MET,
+                "nothing was sent yet, so this can never come",
+                "an expectation looks back to the last send, never before the case",
+            );
+            problems.push(*problem.at(step.at));
+        }
+        something_was_sent |= is_cause(&step.value);
+    }
+    for step in all_steps(case) {
+        check_protocol(head.protocol, step, problems);
+        check_effects(case, step, problems);
+        check_needs(case, step, problems);
+    }
+}
+
+/// What the case as a whole lacks.
+fn check_head(case: &Case, template: &CaseTemplate, problems: &mut Vec<Problem>) {
     let at_key = |key: &str| {
         let entry = template.body.entry(key);
         entry.map_or(template.at, |entry| entry.key.at)
@@ -43,22 +65,6 @@ pub(super) fn case(
             "needs `because`",
         );
         problems.push(*problem.at(at_key("against")));
-    }
-    let mut something_was_sent = false;
-    for step in case.control.iter().chain(&case.steps) {
-        if !something_was_sent && needs_a_cause(head.protocol, &step.value) {
-            let problem = Problem::new(
-                code::NEVER_MET,
-                "nothing was sent yet, so this can never come",
-                "an expectation looks back to the last send, never before the case",
-            );
-            problems.push(*problem.at(step.at));
-        }
-        something_was_sent |= is_cause(&step.value);
-    }
-    for step in all_steps(case) {
-        check_protocol(head.protocol, step, problems);
-        check_effects(case, step, problems);
     }
 }
 
@@ -154,9 +160,30 @@ fn check_effects(case: &Case, step: &Located<Step>, problems: &mut Vec<Problem>)
                 .any(|declared| matches!(declared, Effect::Persists | Effect::Readdresses)));
     if !declared {
         let problem = Problem::new(
-            code::UNDECLARED_EFFECT,
+            code::UNDECLARED,
             format!("this {does}, and the case does not declare it"),
             format!("needs `effects: [{word}]`"),
+        );
+        problems.push(*problem.at(step.at));
+    }
+}
+
+/// A stimulus that the bench may lack must be declared, or the case would break there instead of being skipped.
+fn check_needs(case: &Case, step: &Located<Step>, problems: &mut Vec<Problem>) {
+    let Step::Stimulate(stimulate) = &step.value else {
+        return;
+    };
+    let (stimulus, word) = match stimulate {
+        Stimulate::Power(_) => (StimulusName::Power, "power"),
+        Stimulate::ProcessValue { .. } => (StimulusName::ProcessValue, "process-value"),
+        Stimulate::Condition { .. } => (StimulusName::Condition, "condition"),
+        Stimulate::Setting { .. } => (StimulusName::Setting, "setting"),
+    };
+    if !case.needs.contains(&Need::Stimulus(stimulus)) {
+        let problem = Problem::new(
+            code::UNDECLARED,
+            "this stimulus is not among what the case needs",
+            format!("needs `needs: [stimulus: {word}]`"),
         );
         problems.push(*problem.at(step.at));
     }

@@ -11,9 +11,10 @@ use crate::device::{Deviation, DeviceDescription, PortDescription};
 use crate::expand::Scope;
 use crate::file::{DeviationFile, DeviceFile, PortFile};
 use crate::model::{Located, Source};
+use crate::node::Node;
 use crate::problem::Problem;
 use crate::read::Reader;
-use crate::yaml::{self, Node};
+use crate::yaml;
 use crate::{Diagnostic, Position, code};
 
 /// Reads a device description.

@@ -15,7 +15,7 @@ pub use device::load_device;
 use crate::expand::Environment;
 use crate::lines::Lines;
 use crate::model::{Case, SuiteHead};
-use crate::yaml::Node;
+use crate::node::Node;
 use crate::{Diagnostic, Position, Severity};
 
 /// A file, already read.

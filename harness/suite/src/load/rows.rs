@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{CaseRef, CaseTemplate, Suite, case};
 use crate::expand::Environment;
 use crate::model::Protocol;
+use crate::node::Node;
 use crate::problem::Problem;
-use crate::yaml::Node;
 use crate::{Position, code};
 
 /// The most diagnostics that one case gives; more of them help nobody.
@@ -16,6 +16,8 @@ const MOST_SHOWN: usize = 50;
 const MOST_FOUND: usize = 2_000;
 /// The most values that are read for all rows of a file.
 const MOST_READS: u64 = 20_000_000;
+/// What a problem counts for, for it takes that much longer.
+const READS_OF_A_PROBLEM: u64 = 50;
 
 /// The check of the rows of one suite.
 pub(super) struct RowCheck<'a> {
@@ -28,7 +30,7 @@ pub(super) struct RowCheck<'a> {
 #[derive(Default)]
 struct Found {
     rows: usize,
-    problems: BTreeMap<(Option<Position>, &'static str, Option<Position>), Problem>,
+    problems: BTreeMap<(Option<Position>, &'static str, String), Problem>,
     /// How many rows fail at each placeholder of the case.
     at_placeholders: BTreeMap<(&'static str, Position), usize>,
 }
@@ -78,9 +80,8 @@ impl<'a> RowCheck<'a> {
         // Nothing can be said of the placeholders of a table that could not be read.
         problems
             .retain(|problem| !template.without_rows || problem.code != code::UNKNOWN_PLACEHOLDER);
-        self.reads_left = self
-            .reads_left
-            .saturating_sub(case::MOST_READS - reads.get());
+        let spent = case::MOST_READS - reads.get() + READS_OF_A_PROBLEM * problems.len() as u64;
+        self.reads_left = self.reads_left.saturating_sub(spent);
         problems
     }
 }
@@ -94,8 +95,8 @@ impl Found {
                 *self.at_placeholders.entry(key).or_default() += 1;
             }
             if self.problems.len() < MOST_FOUND {
-                let place = (problem.at, problem.code, problem.template);
-                self.problems.entry(place).or_insert(problem);
+                let key = (problem.at, problem.code, problem.message.clone());
+                self.problems.entry(key).or_insert(problem);
             }
         }
     }
@@ -104,6 +105,7 @@ impl Found {
     fn show(self, problems: &mut Vec<Problem>) {
         let mut shown = BTreeSet::new();
         for mut problem in self.problems.into_values() {
+            let mut message = problem.message.clone();
             let placeholder = problem.template.filter(|placeholder| {
                 let count = self.at_placeholders.get(&(problem.code, *placeholder));
                 self.rows > 1 && count == Some(&self.rows)
@@ -111,10 +113,11 @@ impl Found {
             if let Some(placeholder) = placeholder {
                 let cell = problem.at.replace(placeholder);
                 problem.template = None;
+                message.clear();
                 let cell = cell.map(|cell| (cell, "with this, for one".to_owned()));
                 problem.also.extend(cell);
             }
-            if shown.len() < MOST_SHOWN && shown.insert((problem.code, problem.at)) {
+            if shown.len() < MOST_SHOWN && shown.insert((problem.code, problem.at, message)) {
                 problems.push(problem);
             }
         }

@@ -10,9 +10,10 @@ use crate::expand::{BENCH_NAMES, Scope, is_name, placeholders};
 use crate::file::SuiteFile;
 use crate::forms::OneOrMany;
 use crate::model::{Located, SuiteHead};
+use crate::node::{Entry, Kind, Node};
 use crate::problem::{Problem, with_nearest};
 use crate::read::Reader;
-use crate::yaml::{self, Entry, Kind, Node};
+use crate::yaml;
 use crate::{Diagnostic, Position, code};
 
 /// The suite in `file`, as far as it can be read, and what is wrong. `names` are the suites so far, with their places.
