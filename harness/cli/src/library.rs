@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fieldproof_devices::DeviceKind;
+use fieldproof_devices::{DeviceKind, Medium};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_suite::device::DeviceDescription;
+use fieldproof_suite::device::{DeviceDescription, PortDescription};
 use fieldproof_suite::{Diagnostic, SourceFile, Suite};
 
+use crate::bench;
 use crate::complaint::{Complaint, with_choice};
 use crate::embedded;
 use crate::input;
@@ -245,6 +246,7 @@ impl Reader {
             self.problems.push(with_choice(problem, name, &known));
             return;
         };
+        self.ports(&description, kind, &file.path);
         let dictionary = description
             .canopen
             .as_ref()
@@ -262,6 +264,38 @@ impl Reader {
             kind,
         };
         self.devices.insert(device.name().to_owned(), device);
+    }
+
+    /// The ports that a description gives must be those of the reference device.
+    fn ports(&mut self, description: &DeviceDescription, kind: &DeviceKind, path: &str) {
+        for (role, port) in &description.ports {
+            let fail = |message: String| Problem::new(Severity::Error, message).in_file(path);
+            let Some(simulated) = kind.ports.iter().find(|simulated| simulated.role == role) else {
+                let known: Vec<&str> = kind.ports.iter().map(|port| port.role).collect();
+                let problem = fail(format!("the reference device has no port \"{role}\""));
+                self.problems.push(with_choice(problem, role, &known));
+                continue;
+            };
+            match (port, simulated.medium) {
+                (PortDescription::Can { .. }, Medium::Can { .. }) => {}
+                (PortDescription::Serial { companion, .. }, Medium::Serial(_)) => {
+                    let unknown = |name: &&String| !bench::COMPANIONS.contains(&name.as_str());
+                    if let Some(name) = companion.as_ref().filter(unknown) {
+                        let problem = fail(format!("no companion is called \"{name}\""));
+                        self.problems
+                            .push(with_choice(problem, name, &bench::COMPANIONS));
+                    }
+                }
+                (_, Medium::Can { .. }) => {
+                    self.problems
+                        .push(fail(format!("the port \"{role}\" is a CAN port")));
+                }
+                (_, Medium::Serial(_)) => {
+                    self.problems
+                        .push(fail(format!("the port \"{role}\" is a serial port")));
+                }
+            }
+        }
     }
 
     fn dictionary(&mut self, folder: &Folder, name: &str) -> Option<Dictionary> {

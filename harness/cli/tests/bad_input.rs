@@ -205,11 +205,39 @@ fn reports_that_cannot_be_written_are_the_benchs_fault() {
 #[test]
 fn device_description_with_a_mistake_is_an_error() {
     let folder = Folder::new();
-    let exported = folder.run(&["export", "mine"]);
-    assert_eq!(exported.exit(), Some(0));
-    let path = "mine/devices/kinco-servo/device.yaml";
-    let text = folder.read(path).replace("kinco-servo.eds", "missing.eds");
-    folder.write(path, text);
-    let ran = folder.run(&["run", "mine"]);
-    refused_with_one_error(&ran, &["cannot be read", "missing.eds"]);
+    assert_eq!(folder.run(&["export", "mine"]).exit(), Some(0));
+    let path = "mine/devices/teco-jn5-cm-can/device.yaml";
+    let right = folder.read(path);
+    for (what, instead, parts) in [
+        (
+            "eds: TECO_510_CAN.eds",
+            "eds: missing.eds",
+            ["cannot be read", "missing.eds"],
+        ),
+        (
+            "companion: teco-inverter",
+            "companion: teco",
+            ["no companion", "\"teco-inverter\"?"],
+        ),
+        (
+            "  inverter:",
+            "  invertor:",
+            ["no port \"invertor\"", "\"inverter\"?"],
+        ),
+        (
+            "{serial: 19200, parity: none, stop-bits: 1, companion: teco-inverter}",
+            "{can: 500 kbit/s}",
+            ["the port \"inverter\" is a serial port", path],
+        ),
+        (
+            "device: teco-jn5-cm-can",
+            "device: teco-jn5",
+            ["no reference device", "\"teco-jn5-cm-can\"?"],
+        ),
+        ("  - gateway", "  - gatway", ["device.yaml:21:5", "gateway"]),
+    ] {
+        assert!(right.contains(what), "{what}");
+        folder.write(path, right.replacen(what, instead, 1));
+        refused(&folder, &["run", path], &parts);
+    }
 }
