@@ -99,6 +99,7 @@ pub fn play(
         strict: plan.strict,
         inspects_device: plan.inspects_device,
         fault: behaviour.fault.as_deref(),
+        variant: behaviour.variant.as_deref(),
         seed: behaviour.seed,
     };
     Ok(play_lane(&job, &mut lane, sink, stop))

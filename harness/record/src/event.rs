@@ -80,6 +80,8 @@ pub struct LaneStarted {
     pub title: String,
     /// The fault switched on in a reference device, if any.
     pub fault: Option<String>,
+    /// The legal variant that a reference device is, if any.
+    pub variant: Option<String>,
     /// The seed of the run.
     pub seed: u64,
     /// The ports.

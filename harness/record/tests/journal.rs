@@ -19,6 +19,7 @@ fn start() -> Event {
         device: "kinco-servo".to_owned(),
         title: "Kinco servo drive".to_owned(),
         fault: None,
+        variant: None,
         seed: u64::MAX,
         ports: Vec::new(),
     }))
@@ -246,7 +247,7 @@ prop_compose! {
         let ports = ports.into_iter().map(|(name, link, line, timestamps, uncertainty_ns)| {
             PortInfo { name, link, line, timestamps, uncertainty_ns }
         });
-        LaneStarted { format: FORMAT, tool, device, title, fault, seed, ports: ports.collect() }
+        LaneStarted { format: FORMAT, tool, device, title, fault: fault.clone(), variant: fault, seed, ports: ports.collect() }
     }
 }
 

@@ -162,22 +162,41 @@ impl Tester<'_> {
             if !findings.may_go_on() {
                 return;
             }
-            self.steps_begun |= part == Part::Steps;
-            let at_ns = self.session.now().as_nanos();
-            let step_number = (first + number) as u32;
-            self.session.emit(Event::StepStarted(StepStarted {
-                step: step_number,
-                line: step.at.line,
-                at_ns,
-            }));
-            if let Err(stop) = self.step(&step.value) {
-                let part = if is_precondition(&step.value) {
-                    Part::Control
-                } else {
-                    part
-                };
-                self.find(findings, stop, check_of(&step.value), place(step.at), part);
+            let number = first + number;
+            match &step.value {
+                // Played from here, so that a failure points at the step inside.
+                Step::Repeat(repeat) => {
+                    for _ in 0..repeat.times {
+                        self.play_steps(&repeat.steps, part, number, findings, place);
+                    }
+                }
+                _ => self.play_step(step, part, number, findings, place),
             }
+        }
+    }
+
+    fn play_step(
+        &mut self,
+        step: &Located<Step>,
+        part: Part,
+        number: usize,
+        findings: &mut Findings,
+        place: &dyn Fn(Position) -> Place,
+    ) {
+        self.steps_begun |= part == Part::Steps;
+        let at_ns = self.session.now().as_nanos();
+        self.session.emit(Event::StepStarted(StepStarted {
+            step: number as u32,
+            line: step.at.line,
+            at_ns,
+        }));
+        if let Err(stop) = self.step(&step.value) {
+            let part = if is_precondition(&step.value) {
+                Part::Control
+            } else {
+                part
+            };
+            self.find(findings, stop, check_of(&step.value), place(step.at), part);
         }
     }
 

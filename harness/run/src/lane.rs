@@ -1,22 +1,23 @@
 //! One lane: all cases that apply to one device, in order.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use fieldproof_dictionary::Dictionary;
-use fieldproof_link::{Lane, Line, Parity, StopBits};
+use fieldproof_link::Lane;
 use fieldproof_record::{
-    CaseFinished, CaseStarted, Cite, Event, FORMAT, Failure, LaneFinished, LaneStarted, Place,
-    PortInfo, Sink, SuiteFinished, SuiteStarted, Verdict, VerdictCounts,
+    CaseFinished, Event, LaneFinished, Place, Sink, SuiteFinished, SuiteStarted, Verdict,
+    VerdictCounts,
 };
 use fieldproof_suite::device::{DeviceDescription, Feature};
-use fieldproof_suite::model::{Case, Citation, NmtState};
-use fieldproof_suite::{CaseRef, Environment, Position, Suite};
+use fieldproof_suite::model::{Case, NmtState};
+use fieldproof_suite::{CaseRef, Diagnostic, Environment, Position, Suite};
 use fieldproof_wire::canopen::{Multiplexer, NodeId};
 
-use crate::applies::{Bench, effect_name, skip_reason};
+use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
+use crate::entries;
 use crate::node::NodeWatch;
 use crate::relocate::relocate;
 use crate::session::Session;
@@ -49,6 +50,8 @@ pub struct LaneJob<'a> {
     pub inspects_device: bool,
     /// The fault switched on in a reference device, for the record.
     pub fault: Option<&'a str>,
+    /// The legal variant that a reference device is, for the record.
+    pub variant: Option<&'a str>,
     /// The seed of the run, for the record.
     pub seed: u64,
 }
@@ -84,7 +87,9 @@ pub fn play_lane(
     sink: &mut dyn Sink,
     stop: &AtomicBool,
 ) -> LaneOutcome {
-    sink.emit(Event::LaneStarted(Box::new(lane_started(job, lane))));
+    sink.emit(Event::LaneStarted(Box::new(entries::lane_started(
+        job, lane,
+    ))));
     let mut player = Player::new(job, lane, sink, stop);
     player.find_device();
     for suite in suites_for(job.suites, job.device) {
@@ -115,6 +120,8 @@ struct Player<'a> {
     /// The NMT state the device was found in.
     as_found: Option<NmtState>,
     outcome: LaneOutcome,
+    /// What the last look into the device showed.
+    last_state: Option<BTreeMap<String, String>>,
 }
 
 impl<'a> Player<'a> {
@@ -154,6 +161,7 @@ impl<'a> Player<'a> {
                 address: job.bench.address.or(Some(1)),
             },
             as_found: None,
+            last_state: None,
             outcome: LaneOutcome {
                 counts: VerdictCounts::default(),
                 stopped: None,
@@ -244,11 +252,7 @@ impl<'a> Player<'a> {
         };
         let mut case = match case.lower(&self.environment) {
             Ok(case) => case,
-            Err(diagnostics) => {
-                // The loader has lowered it before; only the bench's node or address can have made the difference.
-                let words: Vec<&str> = diagnostics.iter().map(|d| d.message.as_str()).collect();
-                return self.refuse(&case.id(), &words.join("; "));
-            }
+            Err(diagnostics) => return self.refuse(case, place(case.at()), &diagnostics),
         };
         if let Some(node) = self.tester.node {
             relocate(&mut case, node);
@@ -256,7 +260,7 @@ impl<'a> Player<'a> {
         let started_ns = self.tester.session.now().as_nanos();
         self.tester
             .session
-            .emit(Event::CaseStarted(Box::new(case_started(
+            .emit(Event::CaseStarted(Box::new(entries::case_started(
                 &case,
                 started_ns,
                 place(case.at),
@@ -287,139 +291,37 @@ impl<'a> Player<'a> {
         if !self.job.inspects_device {
             return self.tester.play_case(case, self.as_found, place);
         }
-        let before = self.tester.session.lane().device_state();
+        let before = match self.last_state.take() {
+            Some(state) => state,
+            None => self.tester.session.lane().device_state(),
+        };
         let mut outcome = self.tester.play_case(case, self.as_found, place);
         let after = self.tester.session.lane().device_state();
         if before != after && outcome.stops_lane.is_none() {
             outcome.verdict = outcome.verdict.max(Verdict::Error);
             let at_ns = self.tester.session.now().as_nanos();
-            outcome
-                .failures
-                .push(left_changed(&before, &after, at_ns, place(case.at)));
+            outcome.failures.push(entries::left_changed(
+                &before,
+                &after,
+                at_ns,
+                place(case.at),
+            ));
         }
+        self.last_state = Some(after);
         outcome
     }
 
-    fn refuse(&mut self, id: &str, why: &str) -> Verdict {
+    /// The loader has read the case before: only the bench's node or address can have made the difference.
+    fn refuse(&mut self, case: &CaseRef<'_>, place: Place, diagnostics: &[Diagnostic]) -> Verdict {
         let at_ns = self.tester.session.now().as_nanos();
+        let words: Vec<&str> = diagnostics.iter().map(|d| d.message.as_str()).collect();
+        let (started, finished) = entries::refused(case, place, &words.join("; "), at_ns);
         self.tester
             .session
-            .emit(Event::CaseFinished(Box::new(CaseFinished {
-                id: id.to_owned(),
-                at_ns,
-                duration_ns: 0,
-                verdict: Verdict::Skipped,
-                reason: Some(why.to_owned()),
-                failures: Vec::new(),
-                excerpt: Vec::new(),
-            })));
-        Verdict::Skipped
+            .emit(Event::CaseStarted(Box::new(started)));
+        self.tester
+            .session
+            .emit(Event::CaseFinished(Box::new(finished)));
+        Verdict::Error
     }
-}
-
-/// What a look into the device showed: something is not as it was found.
-fn left_changed(
-    before: &BTreeMap<String, String>,
-    after: &BTreeMap<String, String>,
-    at_ns: u64,
-    place: Place,
-) -> Failure {
-    let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
-    let changed = names
-        .into_iter()
-        .filter(|name| before.get(*name) != after.get(*name));
-    let show = |state: &BTreeMap<String, String>, name: &String| {
-        format!(
-            "{name} = {}",
-            state.get(name).map_or("nothing", String::as_str)
-        )
-    };
-    let (mut expected, mut actual) = (Vec::new(), Vec::new());
-    for name in changed {
-        expected.push(show(before, name));
-        actual.push(show(after, name));
-    }
-    Failure {
-        verdict: Verdict::Error,
-        place,
-        at_ns,
-        what: "the device is not as it was found".into(),
-        expected: expected.join(", "),
-        actual: actual.join(", "),
-        notes: vec!["the case must put back what it changes, or say how under restore".into()],
-    }
-}
-
-fn lane_started(job: &LaneJob<'_>, lane: &dyn Lane) -> LaneStarted {
-    LaneStarted {
-        format: FORMAT,
-        tool: job.tool.to_owned(),
-        device: job.name.to_owned(),
-        title: job.device.title.clone(),
-        fault: job.fault.map(str::to_owned),
-        seed: job.seed,
-        ports: lane
-            .ports()
-            .iter()
-            .map(|port| PortInfo {
-                name: port.name.clone(),
-                link: port.link.clone(),
-                line: show_line(port.line),
-                timestamps: port.timestamps.to_owned(),
-                uncertainty_ns: crate::limits::nanoseconds(port.uncertainty),
-            })
-            .collect(),
-    }
-}
-
-/// `250 kbit/s`, `9600 8N1`
-fn show_line(line: Line) -> String {
-    match line {
-        Line::Off => "off".into(),
-        Line::Can { bit_rate } if bit_rate % 1_000_000 == 0 => {
-            format!("{} Mbit/s", bit_rate / 1_000_000)
-        }
-        Line::Can { bit_rate } => format!("{} kbit/s", bit_rate / 1_000),
-        Line::Serial(settings) => {
-            let parity = match settings.parity {
-                Parity::None => 'N',
-                Parity::Even => 'E',
-                Parity::Odd => 'O',
-            };
-            let stop_bits = match settings.stop_bits {
-                StopBits::One => 1,
-                StopBits::Two => 2,
-            };
-            format!("{} 8{parity}{stop_bits}", settings.baud)
-        }
-    }
-}
-
-fn case_started(case: &Case, at_ns: u64, place: Place) -> CaseStarted {
-    CaseStarted {
-        id: case.id.clone(),
-        written_id: case.written_id.clone(),
-        title: case.title.clone(),
-        at_ns,
-        cites: cites(&case.cites),
-        against: cites(&case.against),
-        because: case.because.clone(),
-        examples: case.examples.clone(),
-        effects: case
-            .effects
-            .iter()
-            .map(|effect| effect_name(*effect).to_owned())
-            .collect(),
-        place,
-    }
-}
-
-fn cites(citations: &[Citation]) -> Vec<Cite> {
-    citations
-        .iter()
-        .map(|citation| Cite {
-            document: citation.document.clone(),
-            section: citation.section.clone(),
-        })
-        .collect()
 }

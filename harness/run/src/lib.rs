@@ -7,6 +7,7 @@
 mod applies;
 mod case;
 mod companions;
+mod entries;
 mod excerpt;
 mod lane;
 mod limits;

@@ -35,6 +35,11 @@ fn relocate_step(step: &mut Located<Step>, from: NodeId, to: NodeId) {
                 }
             }
         }
+        Step::Repeat(repeat) => {
+            for step in &mut repeat.steps {
+                relocate_step(step, from, to);
+            }
+        }
         _ => {}
     }
 }

@@ -1,8 +1,9 @@
 //! How fields whose types serde knows in another way are read: for `deserialize_with`.
 
+use std::fmt::Display;
 use std::time::Duration;
 
-use serde::de::{Deserialize, Deserializer, Error};
+use serde::de::{Deserialize, Deserializer, Error, IgnoredAny};
 
 use crate::code;
 use crate::file::{DecodeFile, ModbusException};
@@ -90,7 +91,19 @@ pub(crate) fn optional_address<'de, D: Deserializer<'de>>(
     address.map(|address| within(address, 1, 247)).transpose()
 }
 
-fn within<E: Error>(number: u8, low: u8, high: u8) -> Result<u8, E> {
+/// How often a `repeat` is played.
+pub(crate) fn times<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    within(u32::deserialize(deserializer)?, 1, 1_000_000)
+}
+
+/// A list whose elements are read one by one elsewhere; here only that it is there.
+pub(crate) fn read_later<'de, D: Deserializer<'de>, T>(
+    deserializer: D,
+) -> Result<Vec<T>, D::Error> {
+    IgnoredAny::deserialize(deserializer).map(|_| Vec::new())
+}
+
+fn within<N: Copy + PartialOrd + Display, E: Error>(number: N, low: N, high: N) -> Result<N, E> {
     if (low..=high).contains(&number) {
         return Ok(number);
     }

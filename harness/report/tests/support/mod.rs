@@ -15,6 +15,7 @@ pub(crate) fn lane_started(device: &str) -> Event {
         device: device.to_owned(),
         title: "A drive".to_owned(),
         fault: None,
+        variant: None,
         seed: 7,
         ports: vec![PortInfo {
             name: "can".to_owned(),

@@ -8,7 +8,7 @@ mod pdo;
 mod sdo;
 mod serial;
 
-use fieldproof_suite::model::Step;
+use fieldproof_suite::model::{Repeat, Step};
 
 pub(crate) use frames::main_role;
 pub(crate) use nmt::wire_state;
@@ -40,7 +40,20 @@ impl Tester<'_> {
             Step::ExpectBytes(step) => self.expect_bytes(step),
             Step::Stimulate(step) => self.stimulate(step),
             Step::SetBitRate(bit_rate) => self.set_bit_rate(*bit_rate),
+            Step::Repeat(repeat) => self.repeat(repeat),
         }
+    }
+}
+
+impl Tester<'_> {
+    fn repeat(&mut self, repeat: &Repeat) -> Result<(), Stop> {
+        for _ in 0..repeat.times {
+            repeat
+                .steps
+                .iter()
+                .try_for_each(|step| self.step(&step.value))?;
+        }
+        Ok(())
     }
 }
 
@@ -66,7 +79,8 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
         | Step::SendRpdo(_)
         | Step::SendBytes(_)
         | Step::Stimulate(_)
-        | Step::SetBitRate(_) => None,
+        | Step::SetBitRate(_)
+        | Step::Repeat(_) => None,
     }
 }
 

@@ -318,3 +318,43 @@ fn a_heartbeat_with_a_state_the_node_was_not_told_fails() {
         "an unexpected error control message came"
     );
 }
+
+#[test]
+fn a_repetition_ends_with_the_first_time_that_does_not_pass_and_points_inside() {
+    let mut answers = 0;
+    let device = Scripted::new(move |request: &Frame| {
+        if *request != frame("601#4000200000000000") {
+            return Vec::new();
+        }
+        answers += 1;
+        vec![soon(if answers < 128 {
+            "581#4300200005000000"
+        } else {
+            "581#4300200006000000"
+        })]
+    });
+    let played = Setup::default().play(
+        device,
+        "
+  - case: often
+    title: Reads 2000h again and again
+    cite: [book]
+    steps:
+      - repeat:
+          times: 200
+          steps:
+            - sdo-read: {object: \"2000:00\", as: u32, expect: 5}
+",
+    );
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "2000h:00 holds another value")
+    );
+    assert!(played.case().failures[0].place.text.contains("sdo-read"));
+    let steps = played
+        .events
+        .iter()
+        .filter(|event| matches!(event, Event::StepStarted(_)))
+        .count();
+    assert_eq!(steps, 128);
+}

@@ -275,6 +275,7 @@ impl Setup {
             strict: false,
             inspects_device: false,
             fault: None,
+            variant: None,
             seed: 0,
         };
         let outcome = play_lane(&job, &mut lane, &mut sink, &stop);

@@ -151,8 +151,11 @@ impl<'a> Steps<'_, 'a> {
     fn expect_saves(&mut self, steps: Option<&'a Node>) {
         for step in steps.map(Node::elements).unwrap_or_default() {
             let inside = step.entries().iter().map(|entry| &entry.value);
-            let names = inside.filter_map(|value| value.get("save")?.text());
-            self.scope.saved_later.extend(names.map(str::to_owned));
+            for value in inside {
+                let name = value.get("save").and_then(Node::text);
+                self.scope.saved_later.extend(name.map(str::to_owned));
+                self.expect_saves(value.get("steps"));
+            }
         }
     }
 
@@ -188,7 +191,10 @@ impl<'a> Steps<'_, 'a> {
         };
         let at = entry.key.at;
         match Step::deserialize(Reader::new(node, self.scope, at)) {
-            Ok(value) => {
+            Ok(mut value) => {
+                if let Step::Repeat(repeat) = &mut value {
+                    repeat.steps = self.read(entry.value.get("steps"));
+                }
                 self.save(&value, &entry.value);
                 Some(Located { value, at })
             }

@@ -18,7 +18,7 @@ pub(super) fn case(
 ) {
     check_head(case, template, problems);
     let mut something_was_sent = false;
-    for step in case.control.iter().chain(&case.steps) {
+    for step in flat(&case.control).into_iter().chain(flat(&case.steps)) {
         if !something_was_sent && needs_a_cause(head.protocol, &step.value) {
             let problem = Problem::new(
                 code::NEVER_MET,
@@ -42,7 +42,10 @@ fn check_head(case: &Case, template: &CaseTemplate, problems: &mut Vec<Problem>)
         let entry = template.body.entry(key);
         entry.map_or(template.at, |entry| entry.key.at)
     };
-    if !case.steps.iter().any(|step| can_fail(&step.value)) {
+    if !flat(&case.steps)
+        .into_iter()
+        .any(|step| can_fail(&step.value))
+    {
         let problem = Problem::new(
             code::NEVER_FAILS,
             "no step of this case expects anything, so it can never fail",
@@ -70,7 +73,19 @@ fn check_head(case: &Case, template: &CaseTemplate, problems: &mut Vec<Problem>)
 
 fn all_steps(case: &Case) -> impl Iterator<Item = &Located<Step>> {
     let parts = [&case.control, &case.steps, &case.restore.steps];
-    parts.into_iter().flatten()
+    parts.into_iter().flat_map(|steps| flat(steps))
+}
+
+/// The steps as they are played once; in place of a `repeat` what is inside it.
+fn flat(steps: &[Located<Step>]) -> Vec<&Located<Step>> {
+    let mut all = Vec::with_capacity(steps.len());
+    for step in steps {
+        match &step.value {
+            Step::Repeat(repeat) => all.extend(flat(&repeat.steps)),
+            _ => all.push(step),
+        }
+    }
+    all
 }
 
 fn can_fail(step: &Step) -> bool {
@@ -94,7 +109,8 @@ fn can_fail(step: &Step) -> bool {
         | Step::SendRpdo(_)
         | Step::SendBytes(_)
         | Step::Stimulate(_)
-        | Step::SetBitRate(_) => false,
+        | Step::SetBitRate(_)
+        | Step::Repeat(_) => false,
     }
 }
 

@@ -5,11 +5,11 @@ use serde::Deserialize;
 
 use super::{
     Expect, ExpectBootUp, ExpectBytes, ExpectHeartbeat, ExpectSilence, ExpectState, ExpectTpdo,
-    Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync, Stimulate,
-    Sync,
+    Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync,
+    Stimulate, Sync,
 };
 use crate::forms::{either, either_schema};
-use crate::read_with::bit_rate;
+use crate::read_with::{bit_rate, read_later, times};
 use crate::scalar::BitRate;
 
 /// One action or expectation. In the file: a map with one key, the verb in kebab case.
@@ -92,4 +92,21 @@ pub enum Step {
         #[schemars(with = "BitRate")]
         u32,
     ),
+    /// `repeat: {times: 128, steps: [...]}`: for what shows only the hundredth time.
+    Repeat(Repeat),
+}
+
+/// See [`Step::Repeat`].
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Repeat {
+    /// How many times, 1 to 1,000,000.
+    #[serde(deserialize_with = "times")]
+    #[schemars(range(min = 1, max = 1_000_000))]
+    pub times: u32,
+    /// What is played each time.
+    // Read apart from the rest, so that every wrong one is found.
+    #[serde(deserialize_with = "read_later")]
+    #[schemars(with = "Vec<Step>")]
+    pub steps: Vec<Located<Step>>,
 }

@@ -1,0 +1,163 @@
+//! What goes into the record about lanes and cases.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use fieldproof_link::{Lane, Line, Parity, StopBits};
+use fieldproof_record::{
+    CaseFinished, CaseStarted, Cite, FORMAT, Failure, LaneStarted, Place, PortInfo, Verdict,
+};
+use fieldproof_suite::CaseRef;
+use fieldproof_suite::model::{Case, Citation};
+
+use crate::applies::effect_name;
+use crate::lane::LaneJob;
+
+/// The two entries of a case that cannot be played as it stands on this bench.
+pub(crate) fn refused(
+    case: &CaseRef<'_>,
+    place: Place,
+    why: &str,
+    at_ns: u64,
+) -> (CaseStarted, CaseFinished) {
+    let started = CaseStarted {
+        id: case.id(),
+        written_id: case.written_id(),
+        title: "cannot be read for this bench".into(),
+        at_ns,
+        cites: Vec::new(),
+        against: Vec::new(),
+        because: None,
+        examples: Vec::new(),
+        effects: Vec::new(),
+        place: place.clone(),
+    };
+    let failure = Failure {
+        verdict: Verdict::Error,
+        place,
+        at_ns,
+        what: why.to_owned(),
+        expected: String::new(),
+        actual: String::new(),
+        notes: Vec::new(),
+    };
+    let finished = CaseFinished {
+        id: case.id(),
+        at_ns,
+        duration_ns: 0,
+        verdict: Verdict::Error,
+        reason: None,
+        failures: vec![failure],
+        excerpt: Vec::new(),
+    };
+    (started, finished)
+}
+
+/// What a look into the device showed: something is not as it was found.
+pub(crate) fn left_changed(
+    before: &BTreeMap<String, String>,
+    after: &BTreeMap<String, String>,
+    at_ns: u64,
+    place: Place,
+) -> Failure {
+    let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
+    let changed = names
+        .into_iter()
+        .filter(|name| before.get(*name) != after.get(*name));
+    let show = |state: &BTreeMap<String, String>, name: &String| {
+        format!(
+            "{name} = {}",
+            state.get(name).map_or("nothing", String::as_str)
+        )
+    };
+    let (mut expected, mut actual) = (Vec::new(), Vec::new());
+    for name in changed {
+        expected.push(show(before, name));
+        actual.push(show(after, name));
+    }
+    Failure {
+        verdict: Verdict::Error,
+        place,
+        at_ns,
+        what: "the device is not as it was found".into(),
+        expected: expected.join(", "),
+        actual: actual.join(", "),
+        notes: vec!["the case must put back what it changes, or say how under restore".into()],
+    }
+}
+
+/// The first entry of a lane.
+pub(crate) fn lane_started(job: &LaneJob<'_>, lane: &dyn Lane) -> LaneStarted {
+    LaneStarted {
+        format: FORMAT,
+        tool: job.tool.to_owned(),
+        device: job.name.to_owned(),
+        title: job.device.title.clone(),
+        fault: job.fault.map(str::to_owned),
+        variant: job.variant.map(str::to_owned),
+        seed: job.seed,
+        ports: lane
+            .ports()
+            .iter()
+            .map(|port| PortInfo {
+                name: port.name.clone(),
+                link: port.link.clone(),
+                line: show_line(port.line),
+                timestamps: port.timestamps.to_owned(),
+                uncertainty_ns: crate::limits::nanoseconds(port.uncertainty),
+            })
+            .collect(),
+    }
+}
+
+/// `250 kbit/s`, `9600 8N1`
+fn show_line(line: Line) -> String {
+    match line {
+        Line::Off => "off".into(),
+        Line::Can { bit_rate } if bit_rate % 1_000_000 == 0 => {
+            format!("{} Mbit/s", bit_rate / 1_000_000)
+        }
+        Line::Can { bit_rate } => format!("{} kbit/s", bit_rate / 1_000),
+        Line::Serial(settings) => {
+            let parity = match settings.parity {
+                Parity::None => 'N',
+                Parity::Even => 'E',
+                Parity::Odd => 'O',
+            };
+            let stop_bits = match settings.stop_bits {
+                StopBits::One => 1,
+                StopBits::Two => 2,
+            };
+            format!("{} 8{parity}{stop_bits}", settings.baud)
+        }
+    }
+}
+
+/// The first entry of a case.
+pub(crate) fn case_started(case: &Case, at_ns: u64, place: Place) -> CaseStarted {
+    CaseStarted {
+        id: case.id.clone(),
+        written_id: case.written_id.clone(),
+        title: case.title.clone(),
+        at_ns,
+        cites: cites(&case.cites),
+        against: cites(&case.against),
+        because: case.because.clone(),
+        examples: case.examples.clone(),
+        effects: case
+            .effects
+            .iter()
+            .map(|effect| effect_name(*effect).to_owned())
+            .collect(),
+        place,
+    }
+}
+
+fn cites(citations: &[Citation]) -> Vec<Cite> {
+    citations
+        .iter()
+        .map(|citation| Cite {
+            document: citation.document.clone(),
+            section: citation.section.clone(),
+        })
+        .collect()
+}
