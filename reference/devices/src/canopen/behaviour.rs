@@ -49,6 +49,10 @@ pub struct Behaviour {
     pub sdo_in_stopped: bool,
     /// PDOs are sent and taken in Pre-operational.
     pub pdo_in_pre_operational: bool,
+    /// PDOs are sent and taken in Stopped.
+    pub pdo_in_stopped: bool,
+    /// A remote frame fetches a TPDO though bit 30 of its COB-ID is set.
+    pub remote_bit_ignored: bool,
     /// A synchronous TPDO leaves one SYNC after the one it was due with.
     pub tpdo_one_sync_late: bool,
     /// The toggle bit alternates in the answers of guarding.
@@ -155,6 +159,8 @@ impl Default for Behaviour {
             mapping_entry_big_endian: false,
             sdo_in_stopped: false,
             pdo_in_pre_operational: false,
+            pdo_in_stopped: false,
+            remote_bit_ignored: false,
             tpdo_one_sync_late: false,
             guarding_toggles: true,
             sync_can_be_stopped: true,

@@ -97,6 +97,22 @@ pub(crate) const PDO_IN_PRE_OPERATIONAL: Fault = Fault {
     apply: |behaviour| behaviour.canopen.pdo_in_pre_operational = true,
 };
 
+pub(crate) const PDO_IN_STOPPED: Fault = Fault {
+    name: "pdo-in-stopped",
+    breaks: "CiA 301: NMT states and communication objects",
+    words: "goes on sending and taking PDOs when it is stopped",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo_in_stopped = true,
+};
+
+pub(crate) const REMOTE_BIT_IGNORED: Fault = Fault {
+    name: "remote-bit-ignored",
+    breaks: "CiA 301: PDO COB-ID, bit 30",
+    words: "answers a remote frame with a TPDO whose COB-ID does not allow it",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.remote_bit_ignored = true,
+};
+
 pub(crate) const NODE_ID_ACTIVE_BEFORE_RESET: Fault = Fault {
     name: "node-id-active-before-reset",
     breaks: "CiA 305: configure node-ID protocol; active after a reset",

@@ -41,6 +41,7 @@ impl State {
             (State::Initialising, _) => matches!(service, Service::BootUp),
             (_, Service::BootUp | Service::ErrorControl) => true,
             (State::Stopped, Service::Sdo) => behaviour.sdo_in_stopped,
+            (State::Stopped, Service::Pdo) => behaviour.pdo_in_stopped,
             (State::Stopped, _) => false,
             (State::PreOperational, Service::Pdo) => behaviour.pdo_in_pre_operational,
             (State::PreOperational | State::Operational, _) => true,

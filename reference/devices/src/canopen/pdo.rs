@@ -53,7 +53,7 @@ impl Communication {
         let [identifier_low, identifier_high, ..] = cob_id.to_le_bytes();
         Some(Communication {
             valid: cob_id & INVALID == 0 || (behaviour.invalid_tpdo_sent && is_transmit(index)),
-            remote: cob_id & NO_REMOTE == 0,
+            remote: cob_id & NO_REMOTE == 0 || behaviour.remote_bit_ignored,
             identifier: u16::from_le_bytes([identifier_low, identifier_high]) & 0x7FF,
             kind: number(2)?.to_le_bytes()[0],
             inhibit: Duration::from_micros(u64::from(number(3).unwrap_or(0)) * 100),

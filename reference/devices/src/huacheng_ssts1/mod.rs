@@ -49,6 +49,8 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         faults::STALE_VALUE_AFTER_WRITE,
         faults::SDO_ANSWERED_IN_STOPPED,
         faults::PDO_IN_PRE_OPERATIONAL,
+        faults::PDO_IN_STOPPED,
+        faults::REMOTE_BIT_IGNORED,
         faults::DOWNLOAD_ACK_MISSING,
         faults::HEARTBEAT_NOT_STOPPED,
         faults::NMT_TO_ALL_IGNORED,

@@ -567,6 +567,48 @@ fn fault_in_pre_operational() {
 }
 
 #[test]
+fn fault_in_stopped_pdo() {
+    departs(
+        &KIND,
+        "pdo-in-stopped",
+        "
+        wait 10 ms
+        < 701#00
+        > 601#2F00180201000000
+        < 581#6000180201000000
+        > 000#0201
+        > 080#
+        wait 2 ms
+        ",
+        &[("wait 2 ms", "< 181#000000003102\nwait 2 ms")],
+    );
+}
+
+#[test]
+fn fault_in_remote_bit() {
+    departs(
+        &KIND,
+        "remote-bit-ignored",
+        "
+        wait 10 ms
+        < 701#00
+        > 601#23001801810100C0
+        < 581#60001801810100C0
+        > 601#2F00180201000000
+        < 581#6000180201000000
+        > 601#2300180181010040
+        < 581#6000180181010040
+        > 000#0101
+        > 181#R
+        wait 2 ms
+        > 080#
+        < 181#000000003102
+        ",
+        &[("wait 2 ms", "< 181#000000003102\nwait 2 ms")],
+    );
+}
+
+#[test]
 fn fault_in_confirmation() {
     let changes: Vec<(&str, &str)> = SDO
         .lines()
