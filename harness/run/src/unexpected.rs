@@ -1,5 +1,6 @@
 //! What came and nothing expected: a fault on SDO, LSS, error control and Modbus, a note on EMCY and PDO.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use fieldproof_can::Frame;
@@ -20,6 +21,8 @@ use crate::tester::{SERIAL, Tester};
 enum Judgement {
     /// Nothing: a heartbeat as it should be, traffic of others.
     Proper,
+    /// A PDO under this identifier, to be counted.
+    Pdo(u32),
     /// A line in the report.
     Noted(String),
     /// A fault.
@@ -29,13 +32,21 @@ enum Judgement {
 impl Tester<'_> {
     /// Judges everything that came and nothing expected; the first fault ends it.
     pub(crate) fn judge_unexpected(&mut self, forbids: &[Forbidden]) -> Result<(), Stop> {
+        let mut pdos: BTreeMap<u32, usize> = BTreeMap::new();
         for received in self.session.take_unexpected() {
             match self.judge_one(&received, forbids) {
                 Judgement::Proper => {}
+                Judgement::Pdo(id) => *pdos.entry(id).or_default() += 1,
                 Judgement::Noted(text) => self.notes.push(text),
                 Judgement::Wrong(stop) => return Err(stop),
             }
         }
+        // One line for all of them: a device that sends PDOs sends many.
+        self.notes
+            .extend(pdos.into_iter().map(|(id, count)| match count {
+                1 => format!("a PDO on {id:03X}h that no step expected"),
+                _ => format!("{count} PDOs on {id:03X}h that no step expected"),
+            }));
         Ok(())
     }
 
@@ -74,6 +85,7 @@ impl Tester<'_> {
                 Judgement::Wrong(unexpected("PDO", &show(), Came::Frame(*frame)))
             }
             Service::Emergency if from_device => Judgement::Noted(show()),
+            Service::TransmitPdo(_) if from_device => Judgement::Pdo(frame.id().raw()),
             _ => Judgement::Proper,
         }
     }
