@@ -9,8 +9,9 @@ use fieldproof_can::{Frame, StandardId};
 use fieldproof_devices::{DeviceKind, Settings, kind, kinds};
 use fieldproof_link::{Instant, Outbox, Participant, Reception, Stimulus, Transmission};
 
-const SUITES: [&str; 9] = [
+const SUITES: [&str; 10] = [
     "boot-up",
+    "emergency",
     "error-control",
     "gateway",
     "lss",

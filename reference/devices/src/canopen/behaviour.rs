@@ -59,6 +59,8 @@ pub struct Behaviour {
     pub guarding_toggles: bool,
     /// Clearing bit 30 of 1005h ends the production of SYNC.
     pub sync_can_be_stopped: bool,
+    /// The third byte of an EMCY is the error register.
+    pub emergency_shows_register: bool,
     /// SYNCs beyond its transmission type that a cyclic TPDO waits for.
     pub surplus_syncs: u8,
     /// A TPDO is sent though bit 31 of its COB-ID is set.
@@ -164,6 +166,7 @@ impl Default for Behaviour {
             tpdo_one_sync_late: false,
             guarding_toggles: true,
             sync_can_be_stopped: true,
+            emergency_shows_register: true,
             node_activation: NodeActivation::AtReset,
             lss_revision_specifier: 0x5C,
         }

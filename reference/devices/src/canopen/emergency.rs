@@ -106,6 +106,11 @@ impl Slave {
             .number(ERROR_REGISTER)
             .unwrap_or(0)
             .to_le_bytes()[0];
+        let register = if self.behaviour.emergency_shows_register {
+            register
+        } else {
+            0
+        };
         let raw = u16::try_from(cob_id & 0x7FF).unwrap_or(0);
         let frame = Frame::of_eight(identifier(raw), [low, high, register, 0, 0, 0, 0, 0]);
         self.queue.push(now, Service::Emergency, frame);

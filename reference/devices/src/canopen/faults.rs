@@ -153,6 +153,14 @@ pub(crate) const SYNC_NOT_STOPPED: Fault = Fault {
     apply: |behaviour| behaviour.canopen.sync_can_be_stopped = false,
 };
 
+pub(crate) const EMERGENCY_WITHOUT_REGISTER: Fault = Fault {
+    name: "emergency-without-register",
+    breaks: "CiA 301: emergency protocol, error register",
+    words: "leaves the third byte of an EMCY 0",
+    caught_by: "emergency",
+    apply: |behaviour| behaviour.canopen.emergency_shows_register = false,
+};
+
 pub(crate) const HEARTBEAT_NOT_STOPPED: Fault = Fault {
     name: "heartbeat-not-stopped",
     breaks: "CiA 301: object 1017h, 0 disables the heartbeat",

@@ -12,7 +12,7 @@ use fieldproof_link::{
 };
 
 use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
-use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault};
+use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
 use crate::drive::Drive;
 use crate::modbus::{self, ModbusSlave};
 use registers::DriveRegisters;
@@ -47,7 +47,6 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         faults::TPDO_ONE_SYNC_LATE,
         faults::EXPEDITED_SIZE_WRONG,
         faults::STALE_VALUE_AFTER_WRITE,
-        faults::SDO_ANSWERED_IN_STOPPED,
         faults::PDO_IN_PRE_OPERATIONAL,
         faults::PDO_IN_STOPPED,
         faults::REMOTE_BIT_IGNORED,
@@ -64,6 +63,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         faults::MAPPING_ENTRY_BYTE_ORDER,
         faults::GUARDING_TOGGLE_STUCK,
         faults::SYNC_NOT_STOPPED,
+        faults::EMERGENCY_WITHOUT_REGISTER,
         modbus::faults::CRC_BYTES_SWAPPED,
         modbus::faults::STALE_CRC_ACCEPTED,
         modbus::faults::EXCEPTION_WITHOUT_80H,
@@ -77,6 +77,11 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         modbus::faults::WRITE_MULTIPLE_FORGETS,
     ],
     variants: &[
+        Variant {
+            name: "sdo-in-stopped",
+            words: "answers SDO requests in Stopped, as the prose of its manual has it and the table does not",
+            apply: |behaviour| behaviour.canopen.sdo_in_stopped = true,
+        },
         canopen::variants::NO_TPDO_ON_START,
         canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,

@@ -1,6 +1,6 @@
 use super::KIND;
 use crate::Settings;
-use crate::script::{Script, conforms, departs};
+use crate::script::{Script, assert_same, conforms, departs};
 
 const REMAPPING: &str = "
     switch node = 2
@@ -81,6 +81,22 @@ const GUARDING: &str = "
 #[test]
 fn guarding() {
     conforms(&KIND, GUARDING);
+}
+
+#[test]
+fn sdo_in_stopped_as_the_prose_has_it() {
+    let script = "
+        wait 30 ms
+        < 701#00
+        > 000#0201
+        > 601#4000100000000000
+        < 581#4300100092010200
+        ";
+    let settings = Settings {
+        variant: Some("sdo-in-stopped".to_owned()),
+        ..Settings::default()
+    };
+    assert_same(&Script::new(&KIND, &settings).play(script), script);
 }
 
 #[test]
@@ -201,5 +217,24 @@ fn fault_in_writing_several() {
             "<< 01 03 04 03 E8 07 D0 79 EF",
             "<< 01 03 04 03 E8 00 00 7A 43",
         )],
+    );
+}
+
+#[test]
+fn fault_in_emergency() {
+    departs(
+        &KIND,
+        "emergency-without-register",
+        "
+        wait 30 ms
+        < 701#00
+        begin hardware-fault
+        wait 2 ms
+        < 081#0050010000000000
+        end hardware-fault
+        wait 2 ms
+        < 081#0000000000000000
+        ",
+        &[("< 081#0050010000000000", "< 081#0050000000000000")],
     );
 }
