@@ -37,6 +37,9 @@ pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
     if bytes.len() as u64 > LARGEST_BYTES {
         return Err(too_large());
     }
+    if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
+        return Err(fail("UTF-16 text; save it as UTF-8".to_owned()));
+    }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(SourceFile { path: shown, text }),
         Err(error) => {
@@ -112,6 +115,17 @@ mod tests {
             read(&path).unwrap_err().message,
             "not UTF-8 text: byte 7 is no character"
         );
+    }
+
+    #[test]
+    fn other_encoding_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.yaml");
+        for bytes in [b"\xff\xfel\0", b"\xfe\xff\0l"] {
+            fs::write(&path, bytes).unwrap();
+            let problem = read(&path).unwrap_err();
+            assert_eq!(problem.message, "UTF-16 text; save it as UTF-8");
+        }
     }
 
     #[test]

@@ -45,6 +45,10 @@ pub fn main(options: &Options) -> Exit {
             commands::export::export(directory, *force, &mut screen)
         }
     };
+    let done = done.and_then(|exit| match screen.take_loss() {
+        Some(error) => Err(Complaint::unwritable("standard output", &error)),
+        None => Ok(exit),
+    });
     match done {
         Ok(exit) => exit,
         Err(complaint) => {

@@ -108,6 +108,12 @@ struct Reader {
 impl Reader {
     fn arguments(&mut self, arguments: &[String]) {
         for argument in arguments {
+            // It would be the beginning of every id.
+            if argument.is_empty() {
+                let problem = Problem::new(Severity::Error, "the name of a suite is empty");
+                self.problems.push(problem);
+                continue;
+            }
             let path = Path::new(argument);
             let looks_like_a_path =
                 argument.contains(['/', '\\']) || input::is_yaml(path) || argument == ".";

@@ -104,7 +104,12 @@ pub struct RunOptions {
     #[arg(long, value_name = "NAME", conflicts_with = "fault")]
     pub variant: Option<String>,
     /// The seed of everything that is drawn by lot, such as response times.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub seed: u64,
     /// Where reports are written.
     #[arg(long, value_name = "DIR", default_value = "reports")]
@@ -152,7 +157,12 @@ pub struct ProveOptions {
     #[arg(long = "fault", value_name = "NAME")]
     pub faults: Vec<String>,
     /// The seed of everything that is drawn by lot, such as response times.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub seed: u64,
     /// How to print the outcome.
     #[arg(long, default_value = "text")]

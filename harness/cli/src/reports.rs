@@ -28,8 +28,13 @@ pub(crate) type LaneCases = (Vec<SuiteHead>, File);
 impl Reports {
     /// Makes the folder if it is not there.
     pub(crate) fn open(folder: &Path) -> Result<Reports, Complaint> {
-        fs::create_dir_all(folder)
-            .map_err(|error| Complaint::unwritable(folder.display(), &error))?;
+        fs::create_dir_all(folder).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => {
+                let error = io::Error::new(error.kind(), "it is there and no folder");
+                Complaint::unwritable(folder.display(), &error)
+            }
+            _ => Complaint::unwritable(folder.display(), &error),
+        })?;
         Ok(Reports {
             folder: folder.to_owned(),
         })

@@ -8,10 +8,11 @@ use fieldproof_report::{Ink, Problem, render};
 use crate::options::Color;
 
 /// Standard output and error. Everything is given with colours, and these are taken out where they do not belong. Once
-/// nobody reads an output any more (`| head`), what follows is dropped without a word.
+/// nobody reads an output any more (`| head`), what follows is dropped without a word; any other loss is kept in mind.
 pub(crate) struct Screen {
     out: AutoStream<io::Stdout>,
     error: AutoStream<io::Stderr>,
+    lost: Option<io::Error>,
 }
 
 /// The ink that everything for a [`Screen`] is made with.
@@ -30,6 +31,7 @@ impl Screen {
         Screen {
             out: AutoStream::new(io::stdout(), choice),
             error: AutoStream::new(io::stderr(), choice),
+            lost: None,
         }
     }
 
@@ -40,8 +42,17 @@ impl Screen {
 
     /// Prints `text` as it is.
     pub(crate) fn print(&mut self, text: &str) {
-        let _ = self.out.write_all(text.as_bytes());
-        let _ = self.out.flush();
+        let written = self.out.write_all(text.as_bytes());
+        if let Err(error) = written.and_then(|()| self.out.flush())
+            && error.kind() != io::ErrorKind::BrokenPipe
+        {
+            self.lost.get_or_insert(error);
+        }
+    }
+
+    /// Why something that was printed did not get to where it belongs, a full disk for instance.
+    pub(crate) fn take_loss(&mut self) -> Option<io::Error> {
+        self.lost.take()
     }
 
     /// Prints `value` as JSON.

@@ -241,3 +241,19 @@ fn device_description_with_a_mistake_is_an_error() {
         refused(&folder, &["run", path], &parts);
     }
 }
+
+#[test]
+fn empty_name_is_an_error() {
+    refused(
+        &Folder::new(),
+        &["run", ""],
+        &["the name of a suite is empty"],
+    );
+}
+
+#[test]
+fn seed_below_zero_is_an_error() {
+    let ran = Folder::new().run(&["run", "--seed", "-1"]);
+    assert_eq!(ran.exit(), Some(2));
+    assert!(ran.error().contains("invalid value '-1' for '--seed <N>'"));
+}

@@ -317,3 +317,57 @@ fn interrupted_run_writes_what_it_has() {
     assert_eq!(report.tests as u64, u64::from(end.counts.total()));
     assert!(report.tests < 50_000);
 }
+
+#[test]
+fn lane_that_stops_says_how_much_it_left_out() {
+    let folder = Folder::new();
+    let arguments = [
+        "run",
+        "canopen.error-control",
+        "--device",
+        "kinco-servo",
+        "--fault",
+        "boot-up-missing",
+    ];
+    let ran = folder.run(&arguments);
+    assert_eq!(ran.exit(), Some(3), "{}", ran.error());
+    assert!(ran.out().contains("cases were not played"), "{}", ran.out());
+    let ran = folder.run(&[&arguments[..], &["--format", "json"]].concat());
+    let outcome: serde_json::Value = serde_json::from_str(&ran.out()).unwrap();
+    let counts = outcome["lanes"][0]["counts"].as_object().unwrap();
+    let played: u64 = counts.values().map(|count| count.as_u64().unwrap()).sum();
+    let cases = folder.run(&["list", "canopen.error-control", "--format", "json"]);
+    let cases: Vec<serde_json::Value> = serde_json::from_str(&cases.out()).unwrap();
+    let left_out = outcome["not_played"].as_u64().unwrap();
+    assert_eq!(played + left_out, cases.len() as u64);
+    assert!(left_out > 0);
+}
+
+#[test]
+fn outcome_is_shown_though_it_cannot_be_written() {
+    let folder = Folder::new();
+    std::fs::create_dir_all(folder.path().join("reports/junit.xml")).unwrap();
+    let ran = folder.run(&["run", "canopen.sdo", "--device", "kinco-servo"]);
+    assert_eq!(ran.exit(), Some(3));
+    assert!(ran.out().contains("all passed"), "{}", ran.out());
+    assert!(!ran.out().contains("reports are in"), "{}", ran.out());
+    assert!(ran.error().contains("junit.xml"), "{}", ran.error());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn output_to_a_full_disk_is_an_error() {
+    let folder = Folder::new();
+    for arguments in [
+        ["list"].as_slice(),
+        &["schema"],
+        &["faults", "--format", "json"],
+    ] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+        let mut command = folder.command(arguments);
+        let ran = command.stdout(full.unwrap()).output().unwrap();
+        assert_eq!(ran.status.code(), Some(3), "{arguments:?}");
+        let error = String::from_utf8(ran.stderr).unwrap();
+        assert!(error.contains("cannot be written"), "{error}");
+    }
+}

@@ -37,10 +37,40 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     let stage = stage(&library, &devices, &plan, options, screen);
     let lanes = lanes::play(&library, &devices, &plan, &reports, &stage, stop);
     let (summaries, screen) = stage.leave();
-    reports.junit(lanes?)?;
-    let exit = Exit::of_run(&summaries, options.strict);
-    show_outcome(&summaries, started.elapsed(), exit, options, screen);
-    Ok(exit)
+    let written = lanes.and_then(|lanes| reports.junit(lanes));
+    let exit = match &written {
+        Ok(()) => Exit::of_run(&summaries, options.strict),
+        Err(complaint) => complaint.exit,
+    };
+    let outcome = RunOutcome {
+        seed: options.seed,
+        strict: options.strict,
+        exit: exit.code(),
+        not_played: not_played(&library, &devices, &plan, &summaries),
+        lanes: &summaries,
+    };
+    // What was seen is worth knowing also where it could not be kept.
+    show_outcome(
+        &outcome,
+        started.elapsed(),
+        written.is_ok(),
+        options,
+        screen,
+    );
+    written.map(|()| exit)
+}
+
+fn planned(library: &Library, devices: &[&Device], plan: &Plan) -> usize {
+    let suites = devices
+        .iter()
+        .flat_map(|device| plan.suites(library, device));
+    suites.map(|(_, cases)| cases).sum()
+}
+
+/// How many cases no lane came to, because it was stopped.
+fn not_played(library: &Library, devices: &[&Device], plan: &Plan, lanes: &[LaneSummary]) -> usize {
+    let finished = lanes.iter().map(|lane| lane.counts.total() as usize);
+    planned(library, devices, plan).saturating_sub(finished.sum())
 }
 
 fn stage<'s>(
@@ -50,10 +80,7 @@ fn stage<'s>(
     options: &RunOptions,
     screen: &'s mut Screen,
 ) -> Stage<'s> {
-    let suites = devices
-        .iter()
-        .flat_map(|device| plan.suites(library, device));
-    let cases: usize = suites.map(|(_, cases)| cases).sum();
+    let cases = planned(library, devices, plan);
     let text = options.format == Format::Text;
     let names: Vec<&str> = devices.iter().map(|device| device.name()).collect();
     let console = ConsoleOptions {
@@ -77,28 +104,28 @@ struct RunOutcome<'a> {
     seed: u64,
     strict: bool,
     exit: u8,
+    not_played: usize,
     lanes: &'a [LaneSummary],
 }
 
 fn show_outcome(
-    lanes: &[LaneSummary],
+    outcome: &RunOutcome<'_>,
     wall: Duration,
-    exit: Exit,
+    written: bool,
     options: &RunOptions,
     screen: &mut Screen,
 ) {
-    match options.format {
-        Format::Json => screen.print_json(&RunOutcome {
-            seed: options.seed,
-            strict: options.strict,
-            exit: exit.code(),
-            lanes,
-        }),
-        Format::Text => {
-            let text = summary_text(lanes, wall, options.strict, INK);
-            let folder = options.reports.display();
-            screen.print(&format!("{text}reports are in {folder}\n"));
-        }
+    if options.format == Format::Json {
+        return screen.print_json(outcome);
+    }
+    screen.print(&summary_text(outcome.lanes, wall, options.strict, INK));
+    match outcome.not_played {
+        0 => {}
+        1 => screen.print("1 case was not played\n"),
+        cases => screen.print(&format!("{cases} cases were not played\n")),
+    }
+    if written {
+        screen.print(&format!("reports are in {}\n", options.reports.display()));
     }
 }
 
