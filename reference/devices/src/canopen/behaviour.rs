@@ -77,6 +77,14 @@ pub struct Behaviour {
     pub lss_stores: bool,
     /// The serial number that is named selects or does not select the slave.
     pub lss_serial_matters: bool,
+    /// A selection by the whole LSS address is confirmed.
+    pub lss_selection_confirmed: bool,
+    /// A node-ID or bit timing that there is not is refused, and not only passed over.
+    pub lss_configuration_checked: bool,
+    /// An index of the bit timing table that is refused though the table has it.
+    pub lss_refused_index: Option<u8>,
+    /// A number of the identity travels with its most significant byte first.
+    pub lss_identity_big_endian: bool,
     /// The command specifier of the answer to inquire revision number.
     pub lss_revision_specifier: u8,
 }
@@ -151,6 +159,10 @@ impl Default for Behaviour {
             identity: None,
             lss_stores: true,
             lss_serial_matters: true,
+            lss_selection_confirmed: true,
+            lss_configuration_checked: true,
+            lss_refused_index: None,
+            lss_identity_big_endian: false,
             state_codes: StateCodes::STANDARD,
             abort_no_sub_index: 0x0609_0011,
             abort_multiplexer: AbortMultiplexer::OfRequest,

@@ -249,6 +249,38 @@ pub(crate) const LSS_STORE_FORGETS: Fault = Fault {
     apply: |behaviour| behaviour.canopen.lss_stores = false,
 };
 
+pub(crate) const LSS_SELECTION_NOT_CONFIRMED: Fault = Fault {
+    name: "lss-selection-not-confirmed",
+    breaks: "CiA 305: switch state selective protocol, response 44h",
+    words: "is selected by its LSS address and does not say so",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_selection_confirmed = false,
+};
+
+pub(crate) const LSS_CONFIGURATION_UNCHECKED: Fault = Fault {
+    name: "lss-configuration-unchecked",
+    breaks: "CiA 305: configure node-ID and bit timing protocols, error code",
+    words: "says that all is well with a node-ID or a bit timing that there is not",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_configuration_checked = false,
+};
+
+pub(crate) const LSS_BIT_TIMING_MISSING: Fault = Fault {
+    name: "lss-bit-timing-missing",
+    breaks: "CiA 305: configure bit timing protocol, table 0",
+    words: "refuses index 1, 800 kbit/s",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_refused_index = Some(1),
+};
+
+pub(crate) const LSS_IDENTITY_BYTE_ORDER: Fault = Fault {
+    name: "lss-identity-byte-order",
+    breaks: "CiA 305: inquire identity protocols, least significant byte first",
+    words: "answers the inquiries for its identity with the most significant byte first",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.lss_identity_big_endian = true,
+};
+
 pub(crate) const LSS_SERIAL_IGNORED: Fault = Fault {
     name: "lss-serial-ignored",
     breaks: "CiA 305: switch state selective protocol, serial number",

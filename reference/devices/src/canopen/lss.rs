@@ -94,14 +94,15 @@ impl Slave {
             (true, 3) => LssState::Configuration,
             (true, _) => LssState::Matching(part + 1),
         };
-        if self.lss == LssState::Configuration {
+        if self.lss == LssState::Configuration && self.behaviour.lss_selection_confirmed {
             self.answer_lss(now, [0x44, 0, 0, 0, 0, 0, 0, 0]);
         }
     }
 
     fn configure_node(&mut self, now: Instant, node: u8) {
         let valid = matches!(node, 1..=127 | 255);
-        self.answer_lss(now, [0x11, u8::from(!valid), 0, 0, 0, 0, 0, 0]);
+        let refused = !valid && self.behaviour.lss_configuration_checked;
+        self.answer_lss(now, [0x11, u8::from(refused), 0, 0, 0, 0, 0, 0]);
         if valid {
             self.pending_node = node;
             self.activate_pending_node();
@@ -123,8 +124,10 @@ impl Slave {
         index: u8,
     ) {
         let rate = abilities.bit_rates.get(usize::from(index));
-        let rate = rate.filter(|_| selector == 0);
-        self.answer_lss(now, [0x13, u8::from(rate.is_none()), 0, 0, 0, 0, 0, 0]);
+        let rate =
+            rate.filter(|_| selector == 0 && self.behaviour.lss_refused_index != Some(index));
+        let refused = rate.is_none() && self.behaviour.lss_configuration_checked;
+        self.answer_lss(now, [0x13, u8::from(refused), 0, 0, 0, 0, 0, 0]);
         if let Some(rate) = rate {
             self.pending_bit_rate = *rate;
         }
@@ -149,7 +152,11 @@ impl Slave {
             0x5C => self.behaviour.lss_revision_specifier,
             other => other,
         };
-        let [b0, b1, b2, b3] = number.to_le_bytes();
+        let [b0, b1, b2, b3] = if self.behaviour.lss_identity_big_endian {
+            number.to_be_bytes()
+        } else {
+            number.to_le_bytes()
+        };
         self.answer_lss(now, [answered, b0, b1, b2, b3, 0, 0, 0]);
     }
 
