@@ -224,7 +224,8 @@ impl Tester<'_> {
             .min(LATE_ANSWER);
         let until = self.session.now() + longest;
         self.session.uninterruptible = true;
-        self.session.collect_until(until)
+        self.session.collect_until(until)?;
+        self.abort_open_transfer()
     }
 
     /// Writes down why a step did not pass.

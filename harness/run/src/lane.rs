@@ -145,6 +145,7 @@ impl<'a> Player<'a> {
             sync_producer: None,
             restores_by_steps: false,
             steps_begun: false,
+            open_transfer: None,
             strict: job.strict,
             watch: NodeWatch::new(heartbeat_by_default),
             saved: Saved::new(),

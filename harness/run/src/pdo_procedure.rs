@@ -63,6 +63,7 @@ impl Tester<'_> {
         let Outcome::Done(present) = self.sdo_upload(object, within)? else {
             return Ok(None);
         };
+        let present = present.of_size(self.size_of(object)).to_vec();
         if !needed(&present) {
             return Ok(None);
         }

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use fieldproof_can::{Frame, Id};
 use fieldproof_wire::canopen::sdo::{Data, RawSdo, Request, Response, Segment, Transfer};
-use fieldproof_wire::canopen::{AbortCode, Multiplexer, Service};
+use fieldproof_wire::canopen::{AbortCode, Multiplexer, Service, cob_id};
+use fieldproof_wire::describe::describe_frame;
 
 use crate::session::Received;
 use crate::stop::{Came, Stop};
@@ -18,6 +19,30 @@ pub(crate) enum Outcome<T> {
     Refused(AbortCode),
 }
 
+/// A value that was read. A server may leave open how many of the four expedited bytes are data (command 42h).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Uploaded {
+    bytes: Vec<u8>,
+    size_is_given: bool,
+}
+
+impl Uploaded {
+    /// The value: what was given, or where the server left its size open, as many bytes as the object has.
+    pub(crate) fn of_size(&self, size: Option<usize>) -> &[u8] {
+        match size {
+            Some(size) if !self.size_is_given => self.bytes.get(..size).unwrap_or(&self.bytes),
+            _ => &self.bytes,
+        }
+    }
+
+    fn sized(bytes: Vec<u8>) -> Uploaded {
+        Uploaded {
+            bytes,
+            size_is_given: true,
+        }
+    }
+}
+
 /// A value longer than this is not what a field device has; a server that never ends would otherwise fill the memory.
 const LONGEST_VALUE: usize = 1 << 20;
 
@@ -27,7 +52,7 @@ impl Tester<'_> {
         &mut self,
         object: Multiplexer,
         within: Duration,
-    ) -> Result<Outcome<Vec<u8>>, Stop> {
+    ) -> Result<Outcome<Uploaded>, Stop> {
         match self.sdo_exchange(Request::InitiateUpload(object), within)? {
             Response::Abort {
                 object: named,
@@ -39,9 +64,20 @@ impl Tester<'_> {
             } => {
                 check_object("the answer to the read", object, named)?;
                 match transfer {
-                    Transfer::Expedited(data) => Ok(Outcome::Done(data.bytes().to_vec())),
-                    Transfer::ExpeditedUnsized(data) => Ok(Outcome::Done(data.to_vec())),
-                    Transfer::Segmented { size } => self.upload_segments(object, size, within),
+                    Transfer::Expedited(data) => {
+                        Ok(Outcome::Done(Uploaded::sized(data.bytes().to_vec())))
+                    }
+                    Transfer::ExpeditedUnsized(data) => Ok(Outcome::Done(Uploaded {
+                        bytes: data.to_vec(),
+                        size_is_given: false,
+                    })),
+                    Transfer::Segmented { size } => {
+                        // Until the last segment has come the server waits for the next request.
+                        self.open_transfer = Some(object);
+                        let value = self.upload_segments(object, size, within)?;
+                        self.open_transfer = None;
+                        Ok(value)
+                    }
                 }
             }
             other => Err(wrong_service("an answer to initiate upload", &other)),
@@ -53,7 +89,7 @@ impl Tester<'_> {
         object: Multiplexer,
         size: Option<u32>,
         within: Duration,
-    ) -> Result<Outcome<Vec<u8>>, Stop> {
+    ) -> Result<Outcome<Uploaded>, Stop> {
         let mut value = Vec::new();
         let mut toggle = false;
         loop {
@@ -88,7 +124,7 @@ impl Tester<'_> {
                 format!("{} bytes", value.len()),
                 Came::Other,
             )),
-            _ => Ok(Outcome::Done(value)),
+            _ => Ok(Outcome::Done(Uploaded::sized(value))),
         }
     }
 
@@ -113,7 +149,12 @@ impl Tester<'_> {
             Response::InitiateDownload(named) => {
                 check_object("the answer to the write", object, named)?;
                 match transfer {
-                    Transfer::Segmented { .. } => self.download_segments(object, value, within),
+                    Transfer::Segmented { .. } => {
+                        self.open_transfer = Some(object);
+                        let done = self.download_segments(object, value, within)?;
+                        self.open_transfer = None;
+                        Ok(done)
+                    }
                     Transfer::Expedited(_) | Transfer::ExpeditedUnsized(_) => Ok(Outcome::Done(())),
                 }
             }
@@ -150,6 +191,19 @@ impl Tester<'_> {
             toggle = !toggle;
         }
         Ok(Outcome::Done(()))
+    }
+
+    /// Gives up a transfer that went wrong half-way, so that the server does not wait for the rest of it.
+    pub(crate) fn abort_open_transfer(&mut self) -> Result<(), Stop> {
+        let Some(object) = self.open_transfer.take() else {
+            return Ok(());
+        };
+        let abort = Request::Abort {
+            object,
+            code: AbortCode::GENERAL_ERROR,
+        };
+        let request_id = self.identifier(Service::SdoRequest)?;
+        self.send_frame(Frame::of_eight(request_id, abort.encode()))
     }
 
     /// One request and its answer.
@@ -223,10 +277,11 @@ fn check_toggle(answered: bool, asked: bool) -> Result<(), Stop> {
 }
 
 fn wrong_service(expected: &str, came: &Response) -> Stop {
+    let frame = Frame::of_eight(cob_id(Service::SdoResponse, None), came.encode());
     Stop::mismatch(
         "the SDO server answers with another service",
         expected,
-        format!("{came:?}"),
+        describe_frame(&frame),
         Came::Other,
     )
 }

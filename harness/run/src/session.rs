@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use fieldproof_can::Frame;
 use fieldproof_link::{
-    Character, Instant, Lane, Line, Origin, PortIndex, Reception, Sent, SerialSettings,
+    Arrival, Character, Instant, Lane, Line, Origin, PortIndex, Reception, Sent, SerialSettings,
     Transmission,
 };
 use fieldproof_record::{Direction, Event, FrameEvent, SerialEvent, Sink};
@@ -178,6 +178,7 @@ impl<'a> Session<'a> {
         frame: Frame,
     ) -> Result<Sent, Stop> {
         let sent = self.lane.send(port, at, Transmission::Frame(frame))?;
+        self.take_earlier(sent.end)?;
         self.last_sent = sent;
         self.record_frame(sent.end, port, Direction::Sent, frame);
         Ok(sent)
@@ -198,6 +199,7 @@ impl<'a> Session<'a> {
         let sent = self
             .lane
             .send(port, at, Transmission::Characters(characters))?;
+        self.take_earlier(sent.end)?;
         self.last_sent = sent;
         self.note_activity(port, sent.end);
         self.record_serial(SerialEvent {
@@ -252,6 +254,16 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
+    /// Takes what came while something was being sent, so that the record stays in the order of time.
+    fn take_earlier(&mut self, sent: Instant) -> Result<(), Stop> {
+        while let Some(arrival) = self.lane.receive(sent)? {
+            if let Some(received) = self.arrived(arrival) {
+                self.inbox.push_back(received);
+            }
+        }
+        Ok(())
+    }
+
     /// The next whole thing that comes on any port, not later than `deadline`. A serial frame that has begun by then
     /// is waited for.
     fn next(&mut self, deadline: Instant) -> Result<Option<Received>, Stop> {
@@ -259,42 +271,35 @@ impl<'a> Session<'a> {
             if !self.uninterruptible && self.stop.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
             }
-            let frame_ends = self.earliest_frame_end();
-            let until = frame_ends.unwrap_or(deadline);
-            match self.lane.receive(until)? {
-                None => match self.finish_frames(until) {
-                    Some(received) => return Ok(Some(received)),
-                    None => return Ok(None),
-                },
-                Some(arrival) => match arrival.what {
-                    Reception::Frame(frame) => {
-                        let direction = match arrival.origin {
-                            Origin::Bus => Direction::Received,
-                            Origin::Companion(_) => Direction::Companion,
-                        };
-                        self.record_frame(arrival.at, arrival.port, direction, frame);
-                        return Ok(Some(Received {
-                            at: arrival.at,
-                            start: arrival.at,
-                            port: arrival.port,
-                            origin: arrival.origin,
-                            message: Message::Can(frame),
-                        }));
-                    }
-                    Reception::Character(character) => {
-                        self.note_activity(arrival.port, arrival.at);
-                        let finished = self
-                            .assemblers
-                            .get_mut(arrival.port.0)
-                            .and_then(Option::as_mut)
-                            .and_then(|assembler| {
-                                assembler.take(arrival.at, arrival.origin, character)
-                            });
-                        if let Some(frame) = finished {
-                            return Ok(Some(self.serial_received(arrival.port, frame)));
-                        }
-                    }
-                },
+            let until = self.earliest_frame_end().unwrap_or(deadline);
+            let Some(arrival) = self.lane.receive(until)? else {
+                return Ok(self.finish_frames(until));
+            };
+            if let Some(received) = self.arrived(arrival) {
+                return Ok(Some(received));
+            }
+        }
+    }
+
+    /// Records an arrival; gives it back if it is a whole thing or completes one.
+    fn arrived(&mut self, arrival: Arrival) -> Option<Received> {
+        match arrival.what {
+            Reception::Frame(frame) => {
+                let direction = direction_of(arrival.origin);
+                self.record_frame(arrival.at, arrival.port, direction, frame);
+                Some(Received {
+                    at: arrival.at,
+                    start: arrival.at,
+                    port: arrival.port,
+                    origin: arrival.origin,
+                    message: Message::Can(frame),
+                })
+            }
+            Reception::Character(character) => {
+                self.note_activity(arrival.port, arrival.at);
+                let assembler = self.assemblers.get_mut(arrival.port.0)?.as_mut()?;
+                let frame = assembler.take(arrival.at, arrival.origin, character)?;
+                Some(self.serial_received(arrival.port, frame))
             }
         }
     }
@@ -322,10 +327,7 @@ impl<'a> Session<'a> {
     }
 
     fn serial_received(&mut self, port: PortIndex, frame: crate::serial::SerialFrame) -> Received {
-        let direction = match frame.origin {
-            Origin::Bus => Direction::Received,
-            Origin::Companion(_) => Direction::Companion,
-        };
+        let direction = direction_of(frame.origin);
         self.record_serial(SerialEvent {
             at_ns: frame.end.as_nanos(),
             start_ns: frame.start.as_nanos(),
@@ -379,5 +381,12 @@ impl<'a> Session<'a> {
             self.trace.pop_front();
         }
         self.trace.push_back(traffic);
+    }
+}
+
+const fn direction_of(origin: Origin) -> Direction {
+    match origin {
+        Origin::Bus => Direction::Received,
+        Origin::Companion(_) => Direction::Companion,
     }
 }

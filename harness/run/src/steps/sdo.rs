@@ -15,15 +15,16 @@ impl Tester<'_> {
     pub(super) fn sdo_read(&mut self, step: &SdoRead) -> Result<(), Stop> {
         let object = multiplexer(step.object);
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
-        let bytes = match self.sdo_upload(object, within)? {
-            Outcome::Done(bytes) => bytes,
+        let value = match self.sdo_upload(object, within)? {
+            Outcome::Done(value) => value,
             Outcome::Refused(code) => return self.judge_refused_read(step, code),
         };
-        let Some(actual) = decode(step.value_type, &bytes) else {
+        let bytes = value.of_size(size(step.value_type));
+        let Some(actual) = decode(step.value_type, bytes) else {
             return Err(Stop::mismatch(
                 format!("{object} has another size"),
                 format!("{} bytes", size(step.value_type).unwrap_or_default()),
-                format!("{} bytes: {}", bytes.len(), show_bytes(&bytes)),
+                format!("{} bytes: {}", bytes.len(), show_bytes(bytes)),
                 Came::Other,
             ));
         };
@@ -68,7 +69,7 @@ impl Tester<'_> {
         let object = multiplexer(step.object);
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
         let bytes = encode(step.value_type, &step.value, step.unit, &self.saved)?;
-        let before = self.value_before(object)?;
+        let before = self.value_before(object, bytes.len())?;
         self.remember_object(object, &before);
         let outcome = self.sdo_download(object, &bytes, within)?;
         if let Outcome::Refused(_) = outcome

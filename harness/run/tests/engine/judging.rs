@@ -358,3 +358,87 @@ fn a_repetition_ends_with_the_first_time_that_does_not_pass_and_points_inside() 
         .count();
     assert_eq!(steps, 128);
 }
+
+#[test]
+fn an_answer_that_leaves_its_size_open_is_read_with_the_size_of_the_object() {
+    let played = Setup::default().play(
+        answering(&["581#4200200005000000"]),
+        &READ.replace("u32", "u8"),
+    );
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    // A size that is given must be the right one.
+    let played = Setup::default().play(
+        answering(&["581#4300200005000000"]),
+        &READ.replace("u32", "u8"),
+    );
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "2000h:00 has another size")
+    );
+}
+
+#[test]
+fn a_transfer_that_goes_wrong_half_way_is_aborted() {
+    // Two segments; the second answer repeats the toggle bit of the first.
+    let device = Scripted::new(|request: &Frame| {
+        let answer = match request.to_string().as_str() {
+            "601#4008100000000000" => "581#410810000A000000",
+            "601#6000000000000000" => "581#00414243444546",
+            "601#7000000000000000" => "581#09484900000000",
+            _ => return Vec::new(),
+        };
+        vec![soon(&format!("{answer:0<20}"))]
+    });
+    let seen = device.seen.clone();
+    let played = Setup::default().play(
+        device,
+        "
+  - case: name
+    title: Reads the name
+    cite: [book]
+    steps:
+      - sdo-read: {object: \"1008:00\", as: text}
+",
+    );
+    assert_eq!(
+        played.verdict().1,
+        "the toggle bit of the segment is not that of the request"
+    );
+    assert_eq!(
+        seen.lock().unwrap().last().map(String::as_str),
+        Some("601#8008100000000008")
+    );
+}
+
+#[test]
+fn the_record_is_in_the_order_of_time() {
+    // Answers while the next request is on the bus.
+    let device = Scripted::new(|request: &Frame| {
+        if *request == frame("601#4000200000000000") {
+            vec![(Duration::from_micros(130), frame("581#4300200005000000"))]
+        } else {
+            Vec::new()
+        }
+    });
+    let played = Setup::default().play(
+        device,
+        "
+  - case: two-sends
+    title: Two requests in a row
+    cite: [book]
+    steps:
+      - send: \"601#4000200000000000\"
+      - send: \"601#4000300000000000\"
+      - expect-silence: {lasting: 10 ms, of: [701h]}
+",
+    );
+    let instants: Vec<u64> = played
+        .events
+        .iter()
+        .filter_map(|event| match event {
+            Event::Frame(frame) => Some(frame.at_ns),
+            _ => None,
+        })
+        .collect();
+    assert!(instants.is_sorted(), "{instants:?}");
+}
