@@ -412,10 +412,10 @@ fn a_transfer_that_goes_wrong_half_way_is_aborted() {
 
 #[test]
 fn the_record_is_in_the_order_of_time() {
-    // Answers while the next request is on the bus.
+    // Answers at once, and wins the bus from the next request.
     let device = Scripted::new(|request: &Frame| {
         if *request == frame("601#4000200000000000") {
-            vec![(Duration::from_micros(130), frame("581#4300200005000000"))]
+            vec![(Duration::from_micros(1), frame("581#4300200005000000"))]
         } else {
             Vec::new()
         }
