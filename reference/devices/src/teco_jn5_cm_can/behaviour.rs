@@ -9,6 +9,8 @@ pub struct Behaviour {
     pub swapped_registers: Option<[u16; 2]>,
     /// Bit 15 of 6042h becomes the direction of the inverter.
     pub direction_passed_on: bool,
+    /// Bit 7 of 6040h becomes the fault reset of the inverter.
+    pub fault_reset_passed_on: bool,
     /// Counts of 2502h for one count of 6042h.
     pub counts_per_target: u16,
     /// A download is confirmed when the inverter has answered; otherwise when it was asked.
@@ -22,6 +24,7 @@ impl Default for Behaviour {
         Behaviour {
             swapped_registers: None,
             direction_passed_on: true,
+            fault_reset_passed_on: true,
             counts_per_target: 2,
             waits_for_inverter: true,
             refusals_passed_on: true,
@@ -43,6 +46,14 @@ pub(super) const DIRECTION_LOST: Fault = Fault {
     words: "runs forward whatever bit 15 of 6042h says",
     caught_by: "gateway",
     apply: |behaviour| behaviour.gateway.direction_passed_on = false,
+};
+
+pub(super) const FAULT_RESET_LOST: Fault = Fault {
+    name: "gateway-fault-reset-lost",
+    breaks: "TECO JN5-CM-CAN manual 4.6: bit 7 of 6040h clears faults",
+    words: "does not tell the inverter to clear its fault",
+    caught_by: "gateway",
+    apply: |behaviour| behaviour.gateway.fault_reset_passed_on = false,
 };
 
 pub(super) const FREQUENCY_HALVED: Fault = Fault {

@@ -159,7 +159,8 @@ impl Gateway {
         match address {
             CONTROLWORD => {
                 let run = value & 1;
-                let reset = if value & 1 << 7 == 0 { 0 } else { FAULT_RESET };
+                let asked = value & 1 << 7 != 0 && self.behaviour.fault_reset_passed_on;
+                let reset = if asked { FAULT_RESET } else { 0 };
                 let others = self.operation & !(RUN | FAULT_RESET);
                 (OPERATION_REGISTER, others | run | reset)
             }

@@ -67,6 +67,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         faults::MAPPING_ENTRY_BYTE_ORDER,
         behaviour::SWAPS_TWO_REGISTERS,
         behaviour::DIRECTION_LOST,
+        behaviour::FAULT_RESET_LOST,
         behaviour::FREQUENCY_HALVED,
         behaviour::CONFIRMS_EARLY,
         behaviour::REFUSAL_HIDDEN,

@@ -241,6 +241,26 @@ fn fault_in_direction() {
 }
 
 #[test]
+fn fault_in_fault_reset() {
+    departs(
+        "gateway-fault-reset-lost",
+        "
+        wait 20 ms
+        < 701#00
+        > 601#2B40600080000000
+        << 01 06 25 01 00 08 D2 C0
+        wait 30 ms
+        >> 01 06 25 01 00 08 D2 C0
+        < 581#6040600000000000
+        ",
+        &[
+            ("<< 01 06 25 01 00 08 D2 C0", "<< 01 06 25 01 00 00 D3 06"),
+            (">> 01 06 25 01 00 08 D2 C0", ">> 01 06 25 01 00 00 D3 06"),
+        ],
+    );
+}
+
+#[test]
 fn fault_in_scale() {
     let script = "
         wait 20 ms
