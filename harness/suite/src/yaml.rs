@@ -13,6 +13,9 @@ use crate::lines::Lines;
 use crate::node::{Entry, Key, Kind, Node};
 use crate::{Diagnostic, Position, Severity, code};
 
+/// How many anchors, aliases and tags are complained about; a file made to explode has millions.
+const MOST_REFERENCES: usize = 20;
+
 /// The longest text, in bytes.
 const LONGEST_TEXT: usize = 16 << 20;
 /// The most nodes in a file.
@@ -328,6 +331,9 @@ impl<'a> Builder<'a> {
     }
 
     fn refuse_reference(&mut self, span: Span, what: &str) {
+        if self.problems.len() >= MOST_REFERENCES {
+            return;
+        }
         let at = self.place(span);
         let message = format!("{what}: what a case says must stand in it");
         self.problems.push(error(

@@ -47,6 +47,14 @@ fn duration(text: &str) -> Result<Duration, Wrong> {
             "expected a duration such as 100 us, 50 ms, 2 s or 1 min",
         )
     };
+    if let Some(digits) = text.strip_prefix("0x") {
+        let what = match digits.chars().all(|digit| digit.is_ascii_hexdigit()) {
+            true => "is too large a number",
+            false => "is not a number",
+        };
+        let label = "expected hexadecimal digits, 64 bits at most";
+        return Err(Wrong::new(code::NUMBER, format!("`{text}` {what}"), label));
+    }
     let (number, unit) = number_and_unit(text);
     let Some((digits, decimals)) = decimal(number) else {
         return Err(wrong(format!("`{text}` is not a duration")));
