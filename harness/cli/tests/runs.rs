@@ -327,7 +327,7 @@ fn lane_that_stops_says_how_much_it_left_out() {
         "--device",
         "kinco-servo",
         "--fault",
-        "boot-up-missing",
+        "download-ack-missing",
     ];
     let ran = folder.run(&arguments);
     assert_eq!(ran.exit(), Some(3), "{}", ran.error());
