@@ -234,7 +234,7 @@ fn device_description_with_a_mistake_is_an_error() {
             "device: teco-jn5",
             ["no reference device", "\"teco-jn5-cm-can\"?"],
         ),
-        ("  - gateway", "  - gatway", ["device.yaml:20:5", "gateway"]),
+        ("  - gateway", "  - gatway", ["device.yaml:21:5", "gateway"]),
     ] {
         assert!(right.contains(what), "{what}");
         folder.write(path, right.replacen(what, instead, 1));
