@@ -224,6 +224,7 @@ impl Tester<'_> {
             .min(LATE_ANSWER);
         let until = self.session.now() + longest;
         self.session.uninterruptible = true;
+        self.watch.forget_state();
         self.session.collect_until(until)?;
         self.abort_open_transfer()
     }

@@ -178,11 +178,13 @@ impl<'a> Player<'a> {
         let tester = &mut self.tester;
         let patience = tester.session.now() + tester.device.timing.boot_up;
         let probe = Duration::from_millis(100);
+        let mut sends_pdos = false;
         loop {
             let next = tester.session.now() + probe;
             if tester.session.collect_until(next).is_err() {
                 return;
             }
+            sends_pdos |= tester.has_sent_pdos();
             match tester.sdo_upload(
                 Multiplexer::new(0x1000, 0),
                 tester.device.timing.sdo_response,
@@ -196,10 +198,15 @@ impl<'a> Player<'a> {
                 Err(_) => return,
             }
         }
+        // A node that starts by itself sends its PDOs; nothing else can be seen without switching something on.
+        let state = match sends_pdos {
+            true => NmtState::Operational,
+            false => NmtState::PreOperational,
+        };
         tester.session.begin_case();
         let now = tester.session.now();
-        tester.watch.found(NmtState::PreOperational, now);
-        self.as_found = Some(NmtState::PreOperational);
+        tester.watch.found(state, now);
+        self.as_found = Some(state);
     }
 
     fn play_suite(&mut self, suite: &Suite) {

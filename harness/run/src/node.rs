@@ -19,8 +19,8 @@ pub(crate) struct NodeWatch {
     pub(crate) boot_up_due: bool,
     /// Whether it produces heartbeats, by its default and by what was written to 1017h since.
     pub(crate) heartbeat: bool,
-    /// When it was last told not to, if it was.
-    heartbeat_ended_at: Option<Instant>,
+    /// When it was last told not to, if it was; `None` within while that is not confirmed.
+    heartbeat_ended_at: Option<Option<Instant>>,
     /// The period that was written to 1017h, if one was.
     pub(crate) heartbeat_period: Option<Duration>,
     /// What 1017h holds after a reset.
@@ -67,7 +67,7 @@ impl NodeWatch {
                 self.commanded(message.command, at);
             }
         } else if id == cob_id(Service::SdoRequest, Some(node)) {
-            self.written(frame, at);
+            self.written(frame);
         }
     }
 
@@ -75,7 +75,7 @@ impl NodeWatch {
     pub(crate) fn booted(&mut self, at: Instant) {
         self.states.push((at, NmtState::PreOperational));
         self.boot_up_due = false;
-        self.set_heartbeat(self.heartbeat_by_default, None, at);
+        self.set_heartbeat(self.heartbeat_by_default, None, Some(at));
     }
 
     /// Whether `state`, seen at `at`, is right by what the node had been told by then. Each new state may take
@@ -102,7 +102,22 @@ impl NodeWatch {
 
     /// Whether a heartbeat at `at` is in order: they are on, or were until just before.
     pub(crate) fn had_heartbeat(&self, at: Instant) -> bool {
-        self.heartbeat || self.heartbeat_ended_at.is_some_and(|ended| at <= ended)
+        self.heartbeat
+            || self
+                .heartbeat_ended_at
+                .is_some_and(|ended| ended.is_none_or(|ended| at <= ended + GRACE))
+    }
+
+    /// The server has answered: what was written holds from now on.
+    pub(crate) fn confirmed(&mut self, at: Instant) {
+        if let Some(ended @ None) = &mut self.heartbeat_ended_at {
+            *ended = Some(at);
+        }
+    }
+
+    /// A case ended early: nobody knows what the node made of the last command.
+    pub(crate) fn forget_state(&mut self) {
+        self.states.clear();
     }
 
     fn commanded(&mut self, command: Command, at: Instant) {
@@ -112,7 +127,7 @@ impl NodeWatch {
             Command::EnterPreOperational => NmtState::PreOperational,
             Command::ResetNode | Command::ResetCommunication => {
                 self.boot_up_due = true;
-                self.set_heartbeat(self.heartbeat_by_default, None, at);
+                self.set_heartbeat(self.heartbeat_by_default, None, Some(at));
                 NmtState::PreOperational
             }
             Command::Unknown(_) => return,
@@ -120,7 +135,7 @@ impl NodeWatch {
         self.states.push((at, next));
     }
 
-    fn written(&mut self, frame: &Frame, at: Instant) {
+    fn written(&mut self, frame: &Frame) {
         if let Ok(Request::InitiateDownload {
             object,
             transfer: Transfer::Expedited(data),
@@ -133,12 +148,11 @@ impl NodeWatch {
                 .rev()
                 .fold(0, |value, byte| value << 8 | u64::from(*byte));
             let period = (milliseconds != 0).then(|| Duration::from_millis(milliseconds));
-            // The last one may be on its way while the write is.
-            self.set_heartbeat(period.is_some(), period, at + GRACE);
+            self.set_heartbeat(period.is_some(), period, None);
         }
     }
 
-    fn set_heartbeat(&mut self, on: bool, period: Option<Duration>, at: Instant) {
+    fn set_heartbeat(&mut self, on: bool, period: Option<Duration>, at: Option<Instant>) {
         if self.heartbeat && !on {
             self.heartbeat_ended_at = Some(at);
         }
@@ -147,7 +161,7 @@ impl NodeWatch {
     }
 }
 
-/// How long after the request that ends them a heartbeat may still come.
+/// How long after it has ended a heartbeat may still come that was already waiting for the bus.
 const GRACE: Duration = Duration::from_millis(10);
 
 #[cfg(test)]
@@ -195,12 +209,17 @@ mod tests {
         watch.sent(&write("601#2B1710000A000000"), ms(10), node);
         assert_eq!(watch.heartbeat_period, Some(Duration::from_millis(10)));
         watch.sent(&write("601#2B17100000000000"), ms(100), node);
-        assert!(watch.had_heartbeat(ms(105)));
-        assert!(!watch.had_heartbeat(ms(120)));
+        assert!(
+            watch.had_heartbeat(ms(600)),
+            "the write is not confirmed yet"
+        );
+        watch.confirmed(ms(110));
+        assert!(watch.had_heartbeat(ms(115)));
+        assert!(!watch.had_heartbeat(ms(130)));
         watch.sent(&write("601#2B1710000A000000"), ms(200), node);
         watch.sent(&write("000#8201"), ms(300), node);
         assert!(watch.boot_up_due);
         assert!(watch.had_heartbeat(ms(299)));
-        assert!(!watch.had_heartbeat(ms(310)));
+        assert!(!watch.had_heartbeat(ms(320)));
     }
 }

@@ -19,35 +19,36 @@ pub(crate) const fn pdo_parameters(index: u16) -> Option<u16> {
 }
 
 impl Tester<'_> {
-    /// Before a mapping is written back: its PDO is disabled and its count cleared, both to be put back at the end.
+    /// Before a parameter of a PDO is written back: the PDO is disabled, and the count of its mapping cleared if an
+    /// entry is to be written; both to be put back at the end.
     pub(crate) fn prepare_pdo(&mut self, object: Multiplexer) -> Result<(), Stop> {
-        let Some(communication) =
-            pdo_parameters(object.index).filter(|index| *index != object.index)
-        else {
+        let Some(communication) = pdo_parameters(object.index) else {
             return Ok(());
         };
-        let enabled = self.write_now(
-            Multiplexer::new(communication, 1),
+        let enabled = Multiplexer::new(communication, 1);
+        let enabled_before = self.write_now(
+            enabled,
             |bytes| cob_id(bytes) & DISABLED == 0,
             |bytes| (cob_id(bytes) | DISABLED).to_le_bytes().to_vec(),
         )?;
         let count = Multiplexer::new(object.index, 0);
-        let counted = if object.sub == 0 {
-            None
-        } else {
-            self.write_now(
+        let is_entry = object.index != communication && object.sub != 0;
+        let counted_before = match is_entry {
+            true => self.write_now(
                 count,
                 |bytes| bytes.iter().any(|byte| *byte != 0),
                 |_| vec![0],
-            )?
+            )?,
+            false => None,
         };
         // What is pushed last comes back last: the count, then the COB-ID that enables the PDO.
-        if let Some(bytes) = counted {
+        if let Some(bytes) = counted_before {
             self.undo.push_last(count, bytes);
         }
-        if let Some(bytes) = enabled {
-            self.undo
-                .push_last(Multiplexer::new(communication, 1), bytes);
+        if let Some(bytes) = enabled_before
+            && object != enabled
+        {
+            self.undo.push_last(enabled, bytes);
         }
         Ok(())
     }

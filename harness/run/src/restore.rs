@@ -9,7 +9,7 @@ use crate::modbus::{Answer, show_bytes};
 use crate::pdo_procedure::pdo_parameters;
 use crate::sdo::{Outcome, show_abort};
 use crate::stop::{Came, Stop};
-use crate::tester::{Tester, multiplexer};
+use crate::tester::{CAN, Tester, multiplexer};
 use crate::undo::Undo;
 
 /// Objects that are commands, not settings: what they read is not what was written.
@@ -47,11 +47,15 @@ impl Tester<'_> {
     }
 
     /// An object is about to be written: its value before is put back after the case, even if the answer to the write
-    /// never comes.
-    pub(crate) fn remember_object(&mut self, object: Multiplexer, before: &Option<Vec<u8>>) {
-        if let Some(bytes) = before {
-            self.undo.push(Undo::Object(object, bytes.clone()));
-        }
+    /// never comes. Whether there is something new to remember.
+    pub(crate) fn remember_object(
+        &mut self,
+        object: Multiplexer,
+        before: &Option<Vec<u8>>,
+    ) -> bool {
+        before
+            .as_ref()
+            .is_some_and(|bytes| self.undo.push(Undo::Object(object, bytes.clone())))
     }
 
     /// An object was written: somebody must know how to put it back.
@@ -92,10 +96,10 @@ impl Tester<'_> {
     }
 
     /// Registers are about to be written: their values before are put back after the case.
-    pub(crate) fn remember_registers(&mut self, first: u16, before: &Option<Vec<u16>>) {
-        if let Some(values) = before {
-            self.undo.push(Undo::Registers(first, values.clone()));
-        }
+    pub(crate) fn remember_registers(&mut self, first: u16, before: &Option<Vec<u16>>) -> bool {
+        before
+            .as_ref()
+            .is_some_and(|values| self.undo.push(Undo::Registers(first, values.clone())))
     }
 
     /// Registers were written: somebody must know how to put them back.
@@ -140,7 +144,9 @@ impl Tester<'_> {
         }
         for register in &case.restore.registers {
             match self.registers_before(*register, 1)? {
-                Some(values) => self.undo.push(Undo::Registers(*register, values)),
+                Some(values) => {
+                    self.undo.push(Undo::Registers(*register, values));
+                }
                 None => {
                     return Err(Stop::undecided(
                         format!(
@@ -194,6 +200,9 @@ impl Tester<'_> {
 
     /// A drive is stopped before anything else is put back.
     fn stop_drive(&mut self) -> Result<(), Stop> {
+        if self.session.port(CAN).is_none() {
+            return Ok(());
+        }
         let has_controlword = self
             .dictionary
             .is_some_and(|dictionary| dictionary.entry(CONTROLWORD.index, 0).is_some());
@@ -277,7 +286,11 @@ impl Tester<'_> {
         if self.watch.boot_up_due {
             self.await_boot_up()?;
         }
-        if self.watch.state() == Some(NmtState::Stopped) {
+        let sdo_works = matches!(
+            self.watch.state(),
+            Some(NmtState::PreOperational | NmtState::Operational)
+        );
+        if !sdo_works && self.claims(Feature::NmtSlave) {
             self.command_into(NmtState::PreOperational)?;
             let settled = self.session.now() + self.device.timing.nmt_transition;
             self.session.collect_until(settled)?;

@@ -219,6 +219,7 @@ impl Tester<'_> {
                 Came::Silence,
             ));
         };
+        self.watch.confirmed(received.at);
         self.judge_sdo_time(&received, within)?;
         read_response(&frame)
     }

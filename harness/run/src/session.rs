@@ -267,16 +267,29 @@ impl<'a> Session<'a> {
     /// The next whole thing that comes on any port, not later than `deadline`. A serial frame that has begun by then
     /// is waited for.
     fn next(&mut self, deadline: Instant) -> Result<Option<Received>, Stop> {
+        let mut is_over = false;
         loop {
             if !self.uninterruptible && self.stop.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
             }
-            let until = self.earliest_frame_end().unwrap_or(deadline);
-            let Some(arrival) = self.lane.receive(until)? else {
-                return Ok(self.finish_frames(until));
+            let until = match self.earliest_frame_end() {
+                None if is_over => return Ok(None),
+                None => deadline,
+                Some(frame_ends) if is_over => frame_ends,
+                Some(frame_ends) => frame_ends.min(deadline),
             };
-            if let Some(received) = self.arrived(arrival) {
-                return Ok(Some(received));
+            let received = match self.lane.receive(until)? {
+                Some(arrival) => self.arrived(arrival),
+                None => {
+                    is_over |= until >= deadline;
+                    self.finish_frames(until)
+                }
+            };
+            match received {
+                // It began only after the deadline, while a frame that had begun before was waited for.
+                Some(late) if late.start > deadline => self.inbox.push_back(late),
+                Some(received) => return Ok(Some(received)),
+                None => {}
             }
         }
     }

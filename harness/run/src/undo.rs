@@ -20,6 +20,24 @@ pub(crate) enum Undo {
     Line(PortIndex, Line),
 }
 
+impl Undo {
+    /// Whether putting this back makes the other superfluous.
+    fn covers(&self, other: &Undo) -> bool {
+        match (self, other) {
+            (Undo::Object(object, _), Undo::Object(other, _)) => object == other,
+            (Undo::Registers(first, values), Undo::Registers(other, others)) => {
+                first <= other
+                    && usize::from(*other) + others.len() <= usize::from(*first) + values.len()
+            }
+            (Undo::PowerOn, Undo::PowerOn) => true,
+            (Undo::Condition(name), Undo::Condition(other)) => name == other,
+            (Undo::Setting(name, _), Undo::Setting(other, _)) => name == other,
+            (Undo::Line(port, _), Undo::Line(other, _)) => port == other,
+            _ => false,
+        }
+    }
+}
+
 /// What is to be put back, last first.
 #[derive(Debug, Default)]
 pub(crate) struct UndoStack {
@@ -28,10 +46,14 @@ pub(crate) struct UndoStack {
 }
 
 impl UndoStack {
-    pub(crate) fn push(&mut self, undo: Undo) {
-        if !self.closed {
+    /// Remembers something, unless what it was before is remembered already: a value that only lay between would
+    /// else be played back, and move a drive. Whether it was added.
+    pub(crate) fn push(&mut self, undo: Undo) -> bool {
+        let adds = !self.closed && !self.entries.iter().any(|known| known.covers(&undo));
+        if adds {
             self.entries.push(undo);
         }
+        adds
     }
 
     /// Whether what is changed now is not put back in turn.

@@ -45,11 +45,13 @@ impl Tester<'_> {
 
     /// What an expected frame tells of the node: a boot-up means that it is pre-operational.
     fn follow_received(&mut self, frame: &Frame, at: Instant) {
-        if let Some(Some((Service::ErrorControl, Some(node)))) = frame.standard_id().map(identify)
-            && frame.bytes() == [0]
-        {
-            self.node = Some(node);
-            self.watch.booted(at);
+        match frame.standard_id().and_then(identify) {
+            Some((Service::ErrorControl, Some(node))) if frame.bytes() == [0] => {
+                self.node = Some(node);
+                self.watch.booted(at);
+            }
+            Some((Service::SdoResponse, _)) => self.watch.confirmed(at),
+            _ => {}
         }
     }
 

@@ -29,13 +29,12 @@ impl Tester<'_> {
             Some((first, count)) => self.registers_before(first, count)?,
             None => None,
         };
-        if let Some((first, _)) = written {
-            self.remember_registers(first, &before);
-        }
+        let is_remembered =
+            written.is_some_and(|(first, _)| self.remember_registers(first, &before));
         let answer = self.modbus_exchange(to, &request, within)?;
         if let Some((first, _)) = written {
             match &answer {
-                Some(answer) if is_exception(answer) && before.is_some() => self.undo.forget_last(),
+                Some(answer) if is_exception(answer) && is_remembered => self.undo.forget_last(),
                 Some(answer) if is_exception(answer) => {}
                 _ => self.check_registers_remembered(first, &before)?,
             }

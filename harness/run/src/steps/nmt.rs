@@ -13,9 +13,10 @@ use fieldproof_wire::canopen::nmt::{Command, NmtMessage, State};
 use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id, identify};
 
 use crate::limits::{nanoseconds, show};
-use crate::session::Message;
+use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
 use crate::tester::Tester;
+use crate::unexpected::is_proper_heartbeat;
 
 /// Every CANopen device has it, and reading it changes nothing.
 const DEVICE_TYPE: Multiplexer = Multiplexer::new(0x1000, 0);
@@ -99,20 +100,8 @@ impl Tester<'_> {
     ) -> Result<Observed, Stop> {
         let settled = self.session.last_sent().end + within;
         self.session.collect_until(settled)?;
-        let node = self.node;
-        let sends_pdos = self.session.has_come(|received| match received.message {
-            Message::Can(frame) => {
-                frame
-                    .standard_id()
-                    .and_then(identify)
-                    .is_some_and(|(service, from)| {
-                        matches!(service, Service::TransmitPdo(_)) && from == node
-                    })
-            }
-            Message::Serial { .. } => false,
-        });
         match expected {
-            NmtState::Operational if sends_pdos => Ok(Observed::Is),
+            NmtState::Operational if self.has_sent_pdos() => Ok(Observed::Is),
             _ if self.claims(Feature::SdoServer) => self.observe_by_sdo(expected),
             _ => Ok(Observed::CannotTell),
         }
@@ -196,6 +185,22 @@ impl Tester<'_> {
         })
     }
 
+    /// Whether a PDO of the node has come since the last send.
+    pub(crate) fn has_sent_pdos(&self) -> bool {
+        let node = self.node;
+        self.session.has_come(|received| match received.message {
+            Message::Can(frame) => {
+                frame
+                    .standard_id()
+                    .and_then(identify)
+                    .is_some_and(|(service, from)| {
+                        matches!(service, Service::TransmitPdo(_)) && from == node
+                    })
+            }
+            Message::Serial { .. } => false,
+        })
+    }
+
     pub(super) fn expect_boot_up(&mut self, step: &ExpectBootUp) -> Result<(), Stop> {
         let within = step.within.unwrap_or(self.device.timing.boot_up);
         let node = match step.node {
@@ -206,7 +211,7 @@ impl Tester<'_> {
         };
         let id = cob_id(Service::ErrorControl, Some(node));
         let expected = format!("{:03X}#00 within {}", id.raw(), show(within));
-        let Some((frame, received)) = self.first_frame(Id::Standard(id), within)? else {
+        let Some((frame, received)) = self.first_but_heartbeats(Id::Standard(id), within)? else {
             return Err(Stop::mismatch(
                 "no boot-up message came",
                 expected,
@@ -226,6 +231,29 @@ impl Tester<'_> {
         self.node = Some(node);
         self.watch.booted(received.at);
         Ok(())
+    }
+
+    /// The first frame with this identifier, heartbeats that were waiting for the bus left aside.
+    fn first_but_heartbeats(
+        &mut self,
+        id: Id,
+        within: Duration,
+    ) -> Result<Option<(Frame, Received)>, Stop> {
+        loop {
+            let found = self.first_frame(id, within)?;
+            let transition = self.device.timing.nmt_transition;
+            match found {
+                Some((frame, received))
+                    if is_proper_heartbeat(
+                        &frame,
+                        received.at,
+                        &self.watch,
+                        self.node,
+                        transition,
+                    ) => {}
+                found => return Ok(found),
+            }
+        }
     }
 
     pub(super) fn expect_heartbeat(&mut self, step: &ExpectHeartbeat) -> Result<(), Stop> {

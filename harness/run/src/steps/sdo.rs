@@ -70,10 +70,10 @@ impl Tester<'_> {
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
         let bytes = encode(step.value_type, &step.value, step.unit, &self.saved)?;
         let before = self.value_before(object, bytes.len())?;
-        self.remember_object(object, &before);
+        let is_remembered = self.remember_object(object, &before);
         let outcome = self.sdo_download(object, &bytes, within)?;
         if let Outcome::Refused(_) = outcome
-            && before.is_some()
+            && is_remembered
         {
             self.undo.forget_last();
         }

@@ -192,3 +192,65 @@ fn what_cannot_be_read_must_say_how_it_is_undone() {
         (Verdict::Pass, "")
     );
 }
+
+#[test]
+fn values_that_only_lay_between_are_not_played_back() {
+    // The drive must not be told 0Fh once more on the way back to 0.
+    let device = memory(&[((0x6040, 0), [0; 4])]);
+    let seen = device.seen.clone();
+    let played = Setup::default().play(
+        device,
+        "
+  - case: writes
+    title: Writes an object three times
+    cite: [book]
+    effects: [writes]
+    steps:
+      - sdo-write: {object: \"6040:00\", as: u32, value: 6}
+      - sdo-write: {object: \"6040:00\", as: u32, value: 15}
+      - sdo-write: {object: \"6040:00\", as: u32, value: 6}
+",
+    );
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    assert_eq!(
+        writes(&seen.lock().unwrap()),
+        [
+            "601#2340600006000000",
+            "601#234060000F000000",
+            "601#2340600006000000",
+            "601#2340600000000000",
+        ]
+    );
+}
+
+#[test]
+fn a_pdo_that_was_moved_and_enabled_is_disabled_before_it_is_put_back() {
+    let device = memory(&[
+        ((0x1800, 1), [0x81, 1, 0, 0]),
+        ((0x1800, 2), [254, 0, 0, 0]),
+    ]);
+    let seen = device.seen.clone();
+    let played = Setup::default().play(
+        device,
+        "
+  - case: moves
+    title: Moves a PDO to another identifier
+    cite: [book]
+    effects: [writes]
+    steps:
+      - sdo-write: {object: \"1800:01\", as: u32, value: 0x80000181}
+      - sdo-write: {object: \"1800:02\", as: u32, value: 1}
+      - sdo-write: {object: \"1800:01\", as: u32, value: 0x190}
+",
+    );
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    let seen = seen.lock().unwrap();
+    assert_eq!(
+        writes(&seen)[3..],
+        [
+            "601#2300180190010080",
+            "601#23001802FE000000",
+            "601#2300180181010000",
+        ]
+    );
+}
