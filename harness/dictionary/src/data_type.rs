@@ -90,6 +90,38 @@ impl DataType {
         }
     }
 
+    /// Its code in CiA 301, as an EDS writes it.
+    pub const fn code(self) -> u16 {
+        match self {
+            DataType::Boolean => 0x01,
+            DataType::Integer8 => 0x02,
+            DataType::Integer16 => 0x03,
+            DataType::Integer32 => 0x04,
+            DataType::Unsigned8 => 0x05,
+            DataType::Unsigned16 => 0x06,
+            DataType::Unsigned32 => 0x07,
+            DataType::Real32 => 0x08,
+            DataType::VisibleString => 0x09,
+            DataType::OctetString => 0x0A,
+            DataType::UnicodeString => 0x0B,
+            DataType::TimeOfDay => 0x0C,
+            DataType::TimeDifference => 0x0D,
+            DataType::Domain => 0x0F,
+            DataType::Integer24 => 0x10,
+            DataType::Real64 => 0x11,
+            DataType::Integer40 => 0x12,
+            DataType::Integer48 => 0x13,
+            DataType::Integer56 => 0x14,
+            DataType::Integer64 => 0x15,
+            DataType::Unsigned24 => 0x16,
+            DataType::Unsigned40 => 0x18,
+            DataType::Unsigned48 => 0x19,
+            DataType::Unsigned56 => 0x1A,
+            DataType::Unsigned64 => 0x1B,
+            DataType::Unknown(code) => code,
+        }
+    }
+
     /// The size in bits as a PDO mapping counts it; `None` where the type has no fixed size.
     pub const fn bits(self) -> Option<u32> {
         Some(match self {
@@ -150,5 +182,17 @@ impl DataType {
                 | DataType::UnicodeString
                 | DataType::Domain
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_go_both_ways() {
+        for code in 0..=0x40 {
+            assert_eq!(DataType::from_code(code).code(), code);
+        }
     }
 }
