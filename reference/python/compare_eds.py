@@ -13,6 +13,7 @@ import sys
 import canopen
 from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 
+# That of the dump.
 NODE = 5
 
 
@@ -47,7 +48,7 @@ def default(variable):
 def ours(dump, path):
     """The same as our reader reads it."""
     with open(path, "rb") as file:
-        lines = subprocess.run([dump, str(NODE)], stdin=file, capture_output=True, check=True).stdout
+        lines = subprocess.run([dump], stdin=file, capture_output=True, check=True).stdout
     entries = {}
     for line in lines.decode().splitlines():
         index, sub, data_type, access, mappable, low, high, value = line.split(" ")
