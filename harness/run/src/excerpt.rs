@@ -3,11 +3,10 @@
 use fieldproof_can::{Frame, Id};
 use fieldproof_dictionary::Dictionary;
 use fieldproof_record::{Direction, ExcerptLine, FrameEvent};
-use fieldproof_wire::canopen::sdo::RawSdo;
-use fieldproof_wire::canopen::{Service, identify};
 use fieldproof_wire::describe::{Direction as ModbusDirection, describe_frame, describe_modbus};
 
 use crate::modbus::show_bytes;
+use crate::object_names::object_names;
 use crate::session::{Session, Traffic};
 
 /// How many frames before the failure are shown.
@@ -86,23 +85,11 @@ fn frame_of(event: &FrameEvent) -> Option<Frame> {
     }
 }
 
-/// The frame in words, with the name of the object if the dictionary knows it.
+/// The frame in words, with the names of its objects where the dictionary knows them.
 fn describe(frame: &Frame, dictionary: Option<&Dictionary>) -> String {
     let words = describe_frame(frame);
-    let Some((Service::SdoRequest | Service::SdoResponse, _)) =
-        frame.standard_id().and_then(identify)
-    else {
-        return words;
-    };
-    let name = RawSdo::from_slice(frame.bytes()).ok().and_then(|raw| {
-        let object = dictionary?.object(raw.index())?;
-        // Segments carry no object: their bytes must not be read as one.
-        words
-            .contains(&raw.multiplexer().to_string())
-            .then(|| object.name.clone())
-    });
-    match name {
-        Some(name) => format!("{words}  [{name}]"),
+    match dictionary.and_then(|dictionary| object_names(frame, &words, dictionary)) {
+        Some(names) => format!("{words}  [{names}]"),
         None => words,
     }
 }

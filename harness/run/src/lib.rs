@@ -13,6 +13,7 @@ mod lane;
 mod limits;
 mod modbus;
 mod node;
+mod object_names;
 mod pdo_procedure;
 mod relocate;
 mod restore;
