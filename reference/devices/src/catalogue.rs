@@ -78,6 +78,23 @@ pub struct Fault {
     pub(crate) apply: fn(&mut Behaviour),
 }
 
+/// Several lists of faults as one; `N` is their length together.
+pub(crate) const fn all_of<const N: usize>(lists: &[&[Fault]]) -> [Fault; N] {
+    let mut all = [lists[0][0]; N];
+    let (mut list, mut next) = (0, 0);
+    while list < lists.len() {
+        let mut index = 0;
+        while index < lists[list].len() {
+            all[next] = lists[list][index];
+            next += 1;
+            index += 1;
+        }
+        list += 1;
+    }
+    assert!(next == N, "the lists are not as long as the whole");
+    all
+}
+
 /// Something else that a right device may do.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {

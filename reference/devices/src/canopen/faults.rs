@@ -288,3 +288,27 @@ pub(crate) const LSS_SERIAL_IGNORED: Fault = Fault {
     caught_by: "lss",
     apply: |behaviour| behaviour.canopen.lss_serial_matters = false,
 };
+
+/// What every CANopen slave here can have.
+pub(crate) const COMMON: &[Fault] = &[
+    ABORT_CODE_WRONG,
+    ABORT_NAMES_ANOTHER_OBJECT,
+    BOOT_UP_MISSING,
+    HEARTBEAT_STATE_WRONG,
+    TPDO_ONE_SYNC_LATE,
+    EXPEDITED_SIZE_WRONG,
+    STALE_VALUE_AFTER_WRITE,
+    PDO_IN_PRE_OPERATIONAL,
+    PDO_IN_STOPPED,
+    REMOTE_BIT_IGNORED,
+    DOWNLOAD_ACK_MISSING,
+    HEARTBEAT_NOT_STOPPED,
+    NMT_TO_ALL_IGNORED,
+    NMT_TO_ANOTHER_OBEYED,
+    UNKNOWN_NMT_COMMAND_STOPS,
+    UNKNOWN_COMMAND_IGNORED,
+    UPLOAD_BYTE_ORDER,
+    SYNC_COUNTED_WRONG,
+    INVALID_TPDO_SENT,
+    TPDO_BYTE_ORDER,
+];

@@ -12,7 +12,9 @@ use fieldproof_link::{
 };
 
 use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
-use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
+use crate::catalogue::{
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
+};
 use crate::drive::Drive;
 use crate::modbus::{self, ModbusSlave};
 use registers::DriveRegisters;
@@ -24,6 +26,17 @@ const BIT_RATES: &[u32] = &[
 ];
 const CAN: usize = 0;
 const SERIAL: usize = 1;
+
+/// The faults of this device alone.
+const OWN_FAULTS: &[Fault] = &[
+    faults::MAPPING_ENTRY_BYTE_ORDER,
+    faults::GUARDING_TOGGLE_STUCK,
+    faults::SYNC_NOT_STOPPED,
+    faults::EMERGENCY_WITHOUT_REGISTER,
+    modbus::faults::WRITE_MULTIPLE_FORGETS,
+];
+const FAULTS: [Fault; faults::COMMON.len() + modbus::faults::COMMON.len() + OWN_FAULTS.len()] =
+    all_of(&[faults::COMMON, modbus::faults::COMMON, OWN_FAULTS]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -39,43 +52,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(registers::LINE),
         },
     ],
-    faults: &[
-        faults::ABORT_CODE_WRONG,
-        faults::ABORT_NAMES_ANOTHER_OBJECT,
-        faults::BOOT_UP_MISSING,
-        faults::HEARTBEAT_STATE_WRONG,
-        faults::TPDO_ONE_SYNC_LATE,
-        faults::EXPEDITED_SIZE_WRONG,
-        faults::STALE_VALUE_AFTER_WRITE,
-        faults::PDO_IN_PRE_OPERATIONAL,
-        faults::PDO_IN_STOPPED,
-        faults::REMOTE_BIT_IGNORED,
-        faults::DOWNLOAD_ACK_MISSING,
-        faults::HEARTBEAT_NOT_STOPPED,
-        faults::NMT_TO_ALL_IGNORED,
-        faults::NMT_TO_ANOTHER_OBEYED,
-        faults::UNKNOWN_NMT_COMMAND_STOPS,
-        faults::UNKNOWN_COMMAND_IGNORED,
-        faults::UPLOAD_BYTE_ORDER,
-        faults::SYNC_COUNTED_WRONG,
-        faults::INVALID_TPDO_SENT,
-        faults::TPDO_BYTE_ORDER,
-        faults::MAPPING_ENTRY_BYTE_ORDER,
-        faults::GUARDING_TOGGLE_STUCK,
-        faults::SYNC_NOT_STOPPED,
-        faults::EMERGENCY_WITHOUT_REGISTER,
-        modbus::faults::CRC_BYTES_SWAPPED,
-        modbus::faults::STALE_CRC_ACCEPTED,
-        modbus::faults::EXCEPTION_WITHOUT_80H,
-        modbus::faults::EXCEPTION_03_FOR_02,
-        modbus::faults::REPLY_TOO_EARLY,
-        modbus::faults::BROADCAST_ANSWERED,
-        modbus::faults::OTHER_ADDRESS_ANSWERED,
-        modbus::faults::BARE_ADDRESS_ANSWERED,
-        modbus::faults::WRONG_BYTE_COUNT,
-        modbus::faults::WRITE_ECHO_WRONG_VALUE,
-        modbus::faults::WRITE_MULTIPLE_FORGETS,
-    ],
+    faults: &FAULTS,
     variants: &[
         Variant {
             name: "sdo-in-stopped",

@@ -10,7 +10,9 @@ use fieldproof_link::{
 };
 
 use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
-use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
+use crate::catalogue::{
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
+};
 use crate::drive::Drive;
 
 const NODE: u8 = 1;
@@ -20,6 +22,16 @@ const BIT_RATES: &[u32] = &[
 ];
 const PORT: usize = 0;
 
+/// The faults of this device alone.
+const OWN_FAULTS: &[Fault] = &[
+    faults::TOGGLE_NOT_ALTERNATED,
+    faults::SDO_ANSWERED_IN_STOPPED,
+    faults::GUARDING_TOGGLE_STUCK,
+    faults::MAPPING_ENTRY_BYTE_ORDER,
+];
+const FAULTS: [Fault; faults::COMMON.len() + OWN_FAULTS.len()] =
+    all_of(&[faults::COMMON, OWN_FAULTS]);
+
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
     name: "kinco-servo",
@@ -28,32 +40,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "can",
         medium: Medium::Can { bit_rate: BIT_RATE },
     }],
-    faults: &[
-        faults::ABORT_CODE_WRONG,
-        faults::ABORT_NAMES_ANOTHER_OBJECT,
-        faults::BOOT_UP_MISSING,
-        faults::HEARTBEAT_STATE_WRONG,
-        faults::TPDO_ONE_SYNC_LATE,
-        faults::TOGGLE_NOT_ALTERNATED,
-        faults::EXPEDITED_SIZE_WRONG,
-        faults::STALE_VALUE_AFTER_WRITE,
-        faults::SDO_ANSWERED_IN_STOPPED,
-        faults::PDO_IN_PRE_OPERATIONAL,
-        faults::PDO_IN_STOPPED,
-        faults::REMOTE_BIT_IGNORED,
-        faults::DOWNLOAD_ACK_MISSING,
-        faults::HEARTBEAT_NOT_STOPPED,
-        faults::NMT_TO_ALL_IGNORED,
-        faults::NMT_TO_ANOTHER_OBEYED,
-        faults::UNKNOWN_NMT_COMMAND_STOPS,
-        faults::UNKNOWN_COMMAND_IGNORED,
-        faults::UPLOAD_BYTE_ORDER,
-        faults::SYNC_COUNTED_WRONG,
-        faults::INVALID_TPDO_SENT,
-        faults::TPDO_BYTE_ORDER,
-        faults::GUARDING_TOGGLE_STUCK,
-        faults::MAPPING_ENTRY_BYTE_ORDER,
-    ],
+    faults: &FAULTS,
     variants: &[
         Variant {
             name: "download-data-not-echoed",

@@ -16,7 +16,7 @@ use fieldproof_link::{
 
 use crate::canopen::{self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults};
 use crate::catalogue::{
-    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
 use crate::modbus::{self, ModbusSlave, SpeedSign};
 use model::EncoderModel;
@@ -34,6 +34,29 @@ const TWINS: &[(Address, Address)] = &[(Address::new(0x6200, 0), Address::new(0x
 const CAN: usize = 0;
 const SERIAL: usize = 1;
 
+/// The faults of this device alone.
+const OWN_FAULTS: &[Fault] = &[
+    faults::TOGGLE_NOT_ALTERNATED,
+    faults::SDO_ANSWERED_IN_STOPPED,
+    faults::GUARDING_TOGGLE_STUCK,
+    faults::EVENT_TIMER_UNIT,
+    faults::LSS_STORE_FORGETS,
+    faults::LSS_SERIAL_IGNORED,
+    faults::LSS_SELECTION_NOT_CONFIRMED,
+    faults::LSS_CONFIGURATION_UNCHECKED,
+    faults::LSS_BIT_TIMING_MISSING,
+    faults::LSS_IDENTITY_BYTE_ORDER,
+    faults::LSS_REVISION_ANSWERS_5B,
+    faults::NODE_ID_ACTIVE_BEFORE_RESET,
+    IDENTITY_OF_THE_TEMPLATE,
+    SPEED_SIGN_LOST,
+    modbus::faults::SPEED_SIGN_LOST,
+    modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
+    modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
+];
+const FAULTS: [Fault; faults::COMMON.len() + modbus::faults::COMMON.len() + OWN_FAULTS.len()] =
+    all_of(&[faults::COMMON, modbus::faults::COMMON, OWN_FAULTS]);
+
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
     name: "liaomiao-encoder",
@@ -48,55 +71,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(registers::LINE),
         },
     ],
-    faults: &[
-        faults::ABORT_CODE_WRONG,
-        faults::ABORT_NAMES_ANOTHER_OBJECT,
-        faults::BOOT_UP_MISSING,
-        faults::HEARTBEAT_STATE_WRONG,
-        faults::TPDO_ONE_SYNC_LATE,
-        faults::TOGGLE_NOT_ALTERNATED,
-        faults::EXPEDITED_SIZE_WRONG,
-        faults::STALE_VALUE_AFTER_WRITE,
-        faults::SDO_ANSWERED_IN_STOPPED,
-        faults::PDO_IN_PRE_OPERATIONAL,
-        faults::PDO_IN_STOPPED,
-        faults::REMOTE_BIT_IGNORED,
-        faults::DOWNLOAD_ACK_MISSING,
-        faults::HEARTBEAT_NOT_STOPPED,
-        faults::NMT_TO_ALL_IGNORED,
-        faults::NMT_TO_ANOTHER_OBEYED,
-        faults::UNKNOWN_NMT_COMMAND_STOPS,
-        faults::UNKNOWN_COMMAND_IGNORED,
-        faults::UPLOAD_BYTE_ORDER,
-        faults::SYNC_COUNTED_WRONG,
-        faults::INVALID_TPDO_SENT,
-        faults::TPDO_BYTE_ORDER,
-        faults::GUARDING_TOGGLE_STUCK,
-        faults::EVENT_TIMER_UNIT,
-        faults::LSS_STORE_FORGETS,
-        faults::LSS_SERIAL_IGNORED,
-        faults::LSS_SELECTION_NOT_CONFIRMED,
-        faults::LSS_CONFIGURATION_UNCHECKED,
-        faults::LSS_BIT_TIMING_MISSING,
-        faults::LSS_IDENTITY_BYTE_ORDER,
-        faults::LSS_REVISION_ANSWERS_5B,
-        faults::NODE_ID_ACTIVE_BEFORE_RESET,
-        IDENTITY_OF_THE_TEMPLATE,
-        SPEED_SIGN_LOST,
-        modbus::faults::SPEED_SIGN_LOST,
-        modbus::faults::CRC_BYTES_SWAPPED,
-        modbus::faults::STALE_CRC_ACCEPTED,
-        modbus::faults::EXCEPTION_WITHOUT_80H,
-        modbus::faults::EXCEPTION_03_FOR_02,
-        modbus::faults::REPLY_TOO_EARLY,
-        modbus::faults::BROADCAST_ANSWERED,
-        modbus::faults::OTHER_ADDRESS_ANSWERED,
-        modbus::faults::BARE_ADDRESS_ANSWERED,
-        modbus::faults::WRONG_BYTE_COUNT,
-        modbus::faults::WRITE_ECHO_WRONG_VALUE,
-        modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
-        modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
-    ],
+    faults: &FAULTS,
     variants: &[
         Variant {
             name: "tpdo-on-start",

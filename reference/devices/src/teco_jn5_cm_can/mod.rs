@@ -14,7 +14,7 @@ use fieldproof_link::{
 };
 
 use crate::canopen::{self, Address, Factory, Profile, Slave, TransmitEvent, faults};
-use crate::catalogue::{DeviceKind, Medium, PortKind, Settings, UnknownFault};
+use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of};
 use crate::inverter;
 pub use behaviour::Behaviour;
 use gateway::Gateway;
@@ -26,6 +26,21 @@ const BIT_RATE: u32 = 500_000;
 const BIT_RATES: &[u32] = &[500_000, 250_000, 125_000, 50_000];
 const CAN: usize = 0;
 const INVERTER: usize = 1;
+
+/// The faults of this device alone.
+const OWN_FAULTS: &[Fault] = &[
+    faults::TOGGLE_NOT_ALTERNATED,
+    faults::SDO_ANSWERED_IN_STOPPED,
+    faults::MAPPING_ENTRY_BYTE_ORDER,
+    behaviour::SWAPS_TWO_REGISTERS,
+    behaviour::DIRECTION_LOST,
+    behaviour::FAULT_RESET_LOST,
+    behaviour::FREQUENCY_HALVED,
+    behaviour::CONFIRMS_EARLY,
+    behaviour::REFUSAL_HIDDEN,
+];
+const FAULTS: [Fault; faults::COMMON.len() + OWN_FAULTS.len()] =
+    all_of(&[faults::COMMON, OWN_FAULTS]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -41,37 +56,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(inverter::LINE),
         },
     ],
-    faults: &[
-        faults::ABORT_CODE_WRONG,
-        faults::ABORT_NAMES_ANOTHER_OBJECT,
-        faults::BOOT_UP_MISSING,
-        faults::HEARTBEAT_STATE_WRONG,
-        faults::TPDO_ONE_SYNC_LATE,
-        faults::TOGGLE_NOT_ALTERNATED,
-        faults::EXPEDITED_SIZE_WRONG,
-        faults::STALE_VALUE_AFTER_WRITE,
-        faults::SDO_ANSWERED_IN_STOPPED,
-        faults::PDO_IN_PRE_OPERATIONAL,
-        faults::PDO_IN_STOPPED,
-        faults::REMOTE_BIT_IGNORED,
-        faults::DOWNLOAD_ACK_MISSING,
-        faults::HEARTBEAT_NOT_STOPPED,
-        faults::NMT_TO_ALL_IGNORED,
-        faults::NMT_TO_ANOTHER_OBEYED,
-        faults::UNKNOWN_NMT_COMMAND_STOPS,
-        faults::UNKNOWN_COMMAND_IGNORED,
-        faults::UPLOAD_BYTE_ORDER,
-        faults::SYNC_COUNTED_WRONG,
-        faults::INVALID_TPDO_SENT,
-        faults::TPDO_BYTE_ORDER,
-        faults::MAPPING_ENTRY_BYTE_ORDER,
-        behaviour::SWAPS_TWO_REGISTERS,
-        behaviour::DIRECTION_LOST,
-        behaviour::FAULT_RESET_LOST,
-        behaviour::FREQUENCY_HALVED,
-        behaviour::CONFIRMS_EARLY,
-        behaviour::REFUSAL_HIDDEN,
-    ],
+    faults: &FAULTS,
     variants: &[
         canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,
