@@ -97,4 +97,11 @@ codes! {
 
     /// A port that a side of the device needs.
     NO_PORT = "S050";
+    /// A deviation from a check that no suite has.
+    UNKNOWN_CHECK = "S051";
+
+    /// Not a link.
+    LINK = "S060";
+    /// Two devices of a bench with one name.
+    DUPLICATE_DEVICE = "S061";
 }

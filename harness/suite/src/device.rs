@@ -119,7 +119,7 @@ pub struct Deviation {
     pub instead: Instead,
     /// Where it says so.
     pub cite: Vec<Citation>,
-    /// Where this stands.
+    /// Where the check is named.
     pub at: Position,
 }
 

@@ -62,7 +62,7 @@ impl Problem {
         }
         Diagnostic {
             code: self.code,
-            severity: if self.code == code::UNUSED_COLUMN {
+            severity: if [code::UNUSED_COLUMN, code::UNKNOWN_CHECK].contains(&self.code) {
                 Severity::Warning
             } else {
                 Severity::Error

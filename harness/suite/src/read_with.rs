@@ -8,7 +8,7 @@ use serde::de::{Deserialize, Deserializer, Error, IgnoredAny};
 use crate::code;
 use crate::file::{DecodeFile, ModbusException};
 use crate::forms::OneOrMany;
-use crate::model::Decode;
+use crate::model::{Decode, Located};
 use crate::problem::Wrong;
 use crate::scalar::{BitRate, Bytes, CanId, Time};
 
@@ -75,6 +75,34 @@ pub(crate) fn node<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::
 
 pub(crate) fn address<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
     within(u8::deserialize(deserializer)?, 1, 247)
+}
+
+pub(crate) fn located_node<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Located<u8>>, D::Error> {
+    located_within(deserializer, 1, 127)
+}
+
+pub(crate) fn located_address<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Located<u8>>, D::Error> {
+    located_within(deserializer, 1, 247)
+}
+
+fn located_within<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    low: u8,
+    high: u8,
+) -> Result<Option<Located<u8>>, D::Error> {
+    let number = Option::<Located<u8>>::deserialize(deserializer)?;
+    number
+        .map(|Located { value, at }| {
+            Ok(Located {
+                value: within(value, low, high)?,
+                at,
+            })
+        })
+        .transpose()
 }
 
 pub(crate) fn optional_node<'de, D: Deserializer<'de>>(

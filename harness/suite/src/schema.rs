@@ -5,7 +5,7 @@ use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
-use crate::file::{DeviceFile, SuiteFile};
+use crate::file::{BenchFile, DeviceFile, SuiteFile};
 
 /// The JSON Schema (draft 2020-12) of suite files.
 pub fn schema() -> Value {
@@ -35,6 +35,13 @@ pub fn schema() -> Value {
 /// The JSON Schema (draft 2020-12) of device descriptions.
 pub fn device_schema() -> Value {
     let mut schema = generator().into_root_schema_for::<DeviceFile>().to_value();
+    widen_scalars(&mut schema);
+    schema
+}
+
+/// The JSON Schema (draft 2020-12) of benches.
+pub fn bench_schema() -> Value {
+    let mut schema = generator().into_root_schema_for::<BenchFile>().to_value();
     widen_scalars(&mut schema);
     schema
 }
@@ -208,7 +215,11 @@ mod tests {
             let texts = yaml_files(&root.join(folder));
             assert!(texts.len() > 3, "{} files in {folder}", texts.len());
             for text in texts {
-                assert_eq!(errors(&schema, &text), Vec::<String>::new(), "{text}");
+                let schema = match text.contains("\nbench:") {
+                    true => &bench_schema(),
+                    false => &schema,
+                };
+                assert_eq!(errors(schema, &text), Vec::<String>::new(), "{text}");
             }
         }
     }
@@ -222,6 +233,29 @@ mod tests {
         for verb in verbs {
             let verb = verb["required"][0].as_str().unwrap();
             assert!(document.contains(&format!("- {verb}:")), "{verb}");
+        }
+    }
+
+    #[test]
+    fn the_schema_of_benches_refuses_what_the_reader_refuses() {
+        let bench = |device: &str| {
+            format!("language: 1\nbench: a\ndevices:\n  - {{name: a, device: ., {device}}}\n")
+        };
+        let good = bench("ports: {can: 'slcan:/dev/ttyACM0', serial: 'tcp:host:502'}, node: 7Fh");
+        assert_eq!(errors(&bench_schema(), &good), Vec::<String>::new());
+        for wrong in [
+            "ports: {can: can0}",
+            "ports: {can: 'sim:1'}",
+            "ports: {can: 'socketcan:'}",
+            "ports: {can: 'sim:'}, node: 0",
+            "ports: {can: 'sim:'}, permits: [write]",
+            "ports: {}",
+        ] {
+            assert_ne!(
+                errors(&bench_schema(), &bench(wrong)),
+                Vec::<String>::new(),
+                "{wrong}"
+            );
         }
     }
 

@@ -1,8 +1,9 @@
 //! Every diagnostic has a file that shows it and a section that explains it.
 //!
-//! A file in fixtures/suites-invalid is a suite, or with the ending `.device.yaml` a device description; the text beside
-//! it is what must be said of it, one line a diagnostic: `line:column: code message | label | help`, and indented the
-//! other places that matter.
+//! A file in fixtures/suites-invalid is a suite, or with the ending `.device.yaml` a device description, with
+//! `.bench.yaml` a bench; the text beside it is what must be said of it, one line a diagnostic:
+//! `line:column: code message | label | help`, and indented the other places that matter. With `UPDATE_GOLDEN` set, what
+//! comes is written in the place of what is expected.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 #![allow(clippy::disallowed_methods, reason = "the files are beside the test")]
@@ -10,7 +11,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use fieldproof_suite::{Diagnostic, SourceFile, code, load, load_device};
+use fieldproof_suite::{
+    Diagnostic, SourceFile, code, load, load_bench, load_device, unknown_checks,
+};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -44,11 +47,24 @@ fn diagnostics(path: &Path) -> Vec<Diagnostic> {
         text: text(path),
     };
     if file.path.ends_with(".device.yaml") {
-        return load_device(&file).unwrap_err();
+        return match load_device(&file) {
+            Ok(device) => unknown_checks(&device, &file.path, &checks()),
+            Err(diagnostics) => diagnostics,
+        };
+    }
+    if file.path.ends_with(".bench.yaml") {
+        return load_bench(&file).unwrap_err();
     }
     // A second suite of the same name is a second file.
     let times = if file.path.starts_with("S032") { 2 } else { 1 };
     load(&vec![file; times]).diagnostics
+}
+
+/// The checks that a suite could have.
+fn checks() -> BTreeSet<String> {
+    ["nmt.no-sdo-in-stopped", "sdo.long-string"]
+        .map(str::to_owned)
+        .into()
 }
 
 fn shown(diagnostics: &[Diagnostic]) -> String {
@@ -77,6 +93,9 @@ fn every_mistake_is_reported_as_expected() {
         seen += 1;
         let expected = std::fs::read_to_string(path.with_extension("txt")).unwrap_or_default();
         let found = shown(&diagnostics(&path));
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(path.with_extension("txt"), &found).unwrap();
+        }
         if found.is_empty() || found != expected {
             let name = name(&path);
             wrong.push(format!("{name}\nexpected\n{expected}\nfound\n{found}"));

@@ -172,7 +172,7 @@ impl TimingFile {
 #[schemars(rename = "Deviation")]
 pub(crate) struct DeviationFile {
     /// The check, as the suite names it.
-    pub(crate) check: String,
+    pub(crate) check: Located<String>,
     /// What the device does instead.
     pub(crate) instead: InsteadFile,
     /// Where it says so: a source of this file by short name, or with a section.

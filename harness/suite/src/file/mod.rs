@@ -1,5 +1,6 @@
 //! How things are written in a file where that is not how the model has them.
 
+mod bench;
 mod can;
 mod case;
 mod device;
@@ -9,6 +10,7 @@ mod short;
 mod stimulate;
 mod value;
 
+pub(crate) use bench::*;
 pub(crate) use can::*;
 pub(crate) use case::*;
 pub(crate) use device::*;

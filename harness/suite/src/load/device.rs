@@ -1,6 +1,6 @@
 //! A device description.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
 
@@ -12,7 +12,7 @@ use crate::expand::Scope;
 use crate::file::{DeviationFile, DeviceFile, PortFile};
 use crate::model::{Located, Source};
 use crate::node::Node;
-use crate::problem::Problem;
+use crate::problem::{Problem, with_nearest};
 use crate::read::Reader;
 use crate::yaml;
 use crate::{Diagnostic, Position, code};
@@ -34,6 +34,33 @@ pub fn load_device(file: &SourceFile) -> Result<DeviceDescription, Vec<Diagnosti
                 .collect())
         }
     }
+}
+
+/// The deviations of `device`, read from the file at `path`, from checks that are not among `known`. Warnings, for the
+/// suite that has the check may lie elsewhere.
+pub fn unknown_checks(
+    device: &DeviceDescription,
+    path: &str,
+    known: &BTreeSet<String>,
+) -> Vec<Diagnostic> {
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let unknown = device
+        .deviates
+        .iter()
+        .filter(|one| !known.contains(&one.check.as_str()));
+    unknown
+        .map(|one| {
+            let message = format!("no suite has the check `{}`", one.check);
+            let problem = Problem::new(
+                code::UNKNOWN_CHECK,
+                message,
+                "this deviation will never be met",
+            );
+            with_nearest(problem, &one.check, &known)
+                .at(one.at)
+                .into_diagnostic(path)
+        })
+        .collect()
 }
 
 fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<DeviceDescription> {
@@ -129,9 +156,9 @@ fn read_deviation(
         cite,
     } = deviation.value;
     Deviation {
-        check,
+        check: check.value,
         instead: instead.lower(),
         cite: citations(sources, cite, problems),
-        at: deviation.at,
+        at: check.at,
     }
 }

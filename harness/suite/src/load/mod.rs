@@ -1,16 +1,19 @@
 //! Files into suites: every file is read and every row of every table is checked once; a case is made from its row
 //! again each time it is asked for, so that a suite of many rows stays small.
 
+mod bench;
 mod case;
 mod check;
+mod checks;
 mod device;
 mod rows;
 mod suite;
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-pub use device::load_device;
+pub use bench::load_bench;
+pub use device::{load_device, unknown_checks};
 
 use crate::expand::Environment;
 use crate::lines::Lines;
@@ -108,6 +111,16 @@ impl Suite {
                 row,
             })
         })
+    }
+
+    /// The named checks of its steps: a device description may deviate from these. `{column}` in a name stands for
+    /// every value of that column.
+    pub fn checks(&self) -> BTreeSet<String> {
+        let mut checks = BTreeSet::new();
+        for template in &self.cases {
+            checks::names(&template.body, &template.rows, &mut checks);
+        }
+        checks
     }
 
     /// The text of a line of its file, counted from 1; empty if there is no such line.

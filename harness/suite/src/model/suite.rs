@@ -115,7 +115,7 @@ pub enum Need {
 }
 
 /// The kinds of stimulus by name: `power`, `process-value`, `condition`, `setting`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StimulusName {
     /// Power off and on.
