@@ -100,8 +100,12 @@ impl Tester<'_> {
         if frame.bytes() == [0] && self.watch.boot_up_due {
             return Judgement::Proper;
         }
-        if node != self.node && frame.bytes() != [0] {
-            return Judgement::Proper;
+        // Others on the bus live their own lives; a boot-up is worth a line, for it may be the device under a wrong ID.
+        if node != self.node {
+            return match frame.bytes() {
+                [0] => Judgement::Noted(show),
+                _ => Judgement::Proper,
+            };
         }
         Judgement::Wrong(unexpected(
             "error control message",

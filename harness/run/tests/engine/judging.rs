@@ -442,3 +442,18 @@ fn the_record_is_in_the_order_of_time() {
         .collect();
     assert!(instants.is_sorted(), "{instants:?}");
 }
+
+#[test]
+fn another_node_may_boot_while_a_case_is_played() {
+    let played = Setup::default().play(
+        answering(&["702#00", "702#7F", "581#4300200005000000"]),
+        READ,
+    );
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    assert!(
+        played
+            .events
+            .iter()
+            .any(|event| matches!(event, Event::Note(note) if note.text.contains("702#00")))
+    );
+}
