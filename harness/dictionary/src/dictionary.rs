@@ -99,6 +99,20 @@ impl ObjectKind {
             other => ObjectKind::Unknown(other),
         }
     }
+
+    /// Its object code.
+    pub const fn code(self) -> u8 {
+        match self {
+            ObjectKind::Null => 0,
+            ObjectKind::Domain => 2,
+            ObjectKind::DefType => 5,
+            ObjectKind::DefStruct => 6,
+            ObjectKind::Variable => 7,
+            ObjectKind::Array => 8,
+            ObjectKind::Record => 9,
+            ObjectKind::Unknown(code) => code,
+        }
+    }
 }
 
 /// One sub-index of an object: a value that can be read or written.
@@ -159,6 +173,18 @@ impl Access {
             "const" => Access::Constant,
             _ => return None,
         })
+    }
+
+    /// Its word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Access::ReadOnly => "ro",
+            Access::WriteOnly => "wo",
+            Access::ReadWrite => "rw",
+            Access::ReadWriteOnRead => "rwr",
+            Access::ReadWriteOnWrite => "rww",
+            Access::Constant => "const",
+        }
     }
 
     /// Whether an SDO may read it.

@@ -1,40 +1,63 @@
 //! The text of an EDS file as sections, keys and values, each with its line.
 
 /// A `[section]` with its keys in the order of the file.
-#[derive(Debug)]
-pub(crate) struct Section<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) line: usize,
-    pub(crate) keys: Vec<Key<'a>>,
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Section {
+    /// Its name as the file has it, without the blanks around it.
+    pub name: String,
+    /// Its line, from 1.
+    pub line: usize,
+    /// Its keys in the order of the file, repeated ones included.
+    pub keys: Vec<Key>,
 }
 
 /// A `key=value`.
-#[derive(Debug)]
-pub(crate) struct Key<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) value: &'a str,
-    pub(crate) line: usize,
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Key {
+    /// Its name as the file has it, without the blanks around it.
+    pub name: String,
+    /// Everything after the `=`, a `;` included, without the blanks around it.
+    pub value: String,
+    /// Its line, from 1.
+    pub line: usize,
 }
 
 /// A line that is none of: section, key, comment, blank; or a key before the first section.
-#[derive(Debug)]
-pub(crate) struct Stray<'a> {
-    pub(crate) text: &'a str,
-    pub(crate) line: usize,
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stray {
+    /// The line without the blanks around it.
+    pub text: String,
+    /// Its number, from 1.
+    pub line: usize,
 }
 
-impl<'a> Section<'a> {
-    /// The first key of that name, in any case.
-    pub(crate) fn key(&self, name: &str) -> Option<&Key<'a>> {
-        self.keys
-            .iter()
-            .find(|key| key.name.eq_ignore_ascii_case(name))
+impl Section {
+    /// The first key of that name, in any case and with any blanks in it.
+    pub fn key(&self, name: &str) -> Option<&Key> {
+        self.keys.iter().find(|key| key.is(name))
+    }
+
+    /// Whether it is called `name`, in any case.
+    pub fn is(&self, name: &str) -> bool {
+        self.name.eq_ignore_ascii_case(name)
     }
 }
 
+impl Key {
+    /// Whether it is called `name`, in any case and with any blanks in it.
+    pub fn is(&self, name: &str) -> bool {
+        self.name.eq_ignore_ascii_case(name)
+            || (self.name.len() > name.len() && squeezed(&self.name).eq_ignore_ascii_case(name))
+    }
+}
+
+fn squeezed(name: &str) -> String {
+    name.chars().filter(|c| !c.is_whitespace()).collect()
+}
+
 /// Splits `text` into sections. Values keep every character after the `=`, a `;` included, but the blanks around them.
-pub(crate) fn parse(text: &str) -> (Vec<Section<'_>>, Vec<Stray<'_>>) {
-    let mut sections: Vec<Section<'_>> = Vec::new();
+pub(crate) fn parse(text: &str) -> (Vec<Section>, Vec<Stray>) {
+    let mut sections: Vec<Section> = Vec::new();
     let mut strays = Vec::new();
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     for (number, text) in text.lines().enumerate() {
@@ -45,19 +68,22 @@ pub(crate) fn parse(text: &str) -> (Vec<Section<'_>>, Vec<Stray<'_>>) {
         }
         if let Some(name) = section_name(text) {
             sections.push(Section {
-                name,
+                name: name.to_owned(),
                 line,
-                keys: Vec::new(),
+                keys: Vec::with_capacity(8),
             });
             continue;
         }
         match (text.split_once('='), sections.last_mut()) {
             (Some((name, value)), Some(section)) => section.keys.push(Key {
-                name: name.trim(),
-                value: value.trim(),
+                name: name.trim().to_owned(),
+                value: value.trim().to_owned(),
                 line,
             }),
-            _ => strays.push(Stray { text, line }),
+            _ => strays.push(Stray {
+                text: text.to_owned(),
+                line,
+            }),
         }
     }
     (sections, strays)
@@ -79,10 +105,10 @@ mod tests {
             parse("; top\r\n[1000]\r\nParameterName = Device Type;\r\n\r\n[ 1001 ] ; why\r\nA=b=c");
         assert!(strays.is_empty());
         assert_eq!(sections.len(), 2);
-        assert_eq!((sections[0].name, sections[0].line), ("1000", 2));
+        assert_eq!((sections[0].name.as_str(), sections[0].line), ("1000", 2));
         let name = sections[0].key("PARAMETERNAME").unwrap();
-        assert_eq!((name.value, name.line), ("Device Type;", 3));
-        assert_eq!((sections[1].name, sections[1].line), ("1001", 5));
+        assert_eq!((name.value.as_str(), name.line), ("Device Type;", 3));
+        assert_eq!((sections[1].name.as_str(), sections[1].line), ("1001", 5));
         assert_eq!(sections[1].key("a").unwrap().value, "b=c");
     }
 
@@ -92,7 +118,7 @@ mod tests {
         assert_eq!(sections.len(), 1);
         let lines: Vec<_> = strays
             .iter()
-            .map(|stray| (stray.line, stray.text))
+            .map(|stray| (stray.line, stray.text.as_str()))
             .collect();
         assert_eq!(lines, [(1, "lost=1"), (3, "no key here"), (4, "[b")]);
     }

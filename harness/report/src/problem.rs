@@ -9,6 +9,8 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
+    /// Worth knowing.
+    Note,
     /// The input can be used.
     Warning,
     /// The device departs as its manual documents.
@@ -25,6 +27,7 @@ impl Severity {
     /// The word for it.
     pub const fn name(self) -> &'static str {
         match self {
+            Severity::Note => "note",
             Severity::Warning => "warning",
             Severity::Deviation => "deviation",
             Severity::Inconclusive => "inconclusive",

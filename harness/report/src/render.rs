@@ -62,6 +62,7 @@ fn level(severity: Severity) -> Level<'static> {
     match severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
         Severity::Fail => Level::ERROR.with_name("fail"),
         Severity::Inconclusive => Level::WARNING.with_name("inconclusive"),
         Severity::Deviation => Level::INFO.with_name("deviation"),

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Finding, field};
-use crate::ini::Section;
+use super::{Finding, Section, field};
 
 /// What the file says about the device as a whole; `None` where it says nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -42,10 +41,8 @@ pub struct DeviceInfo {
     pub compact_pdo: Option<u8>,
 }
 
-pub(super) fn read(sections: &[Section<'_>], findings: &mut Vec<Finding>) -> DeviceInfo {
-    let section = sections
-        .iter()
-        .find(|section| section.name.eq_ignore_ascii_case("DeviceInfo"));
+pub(super) fn read(sections: &[Section], findings: &mut Vec<Finding>) -> DeviceInfo {
+    let section = sections.iter().find(|section| section.is("DeviceInfo"));
     let Some(section) = section else {
         return DeviceInfo::default();
     };
@@ -69,13 +66,13 @@ pub(super) fn read(sections: &[Section<'_>], findings: &mut Vec<Finding>) -> Dev
     }
 }
 
-fn bit_rates(section: &Section<'_>, findings: &mut Vec<Finding>) -> BTreeSet<u32> {
+fn bit_rates(section: &Section, findings: &mut Vec<Finding>) -> BTreeSet<u32> {
     let mut rates = BTreeSet::new();
     for key in &section.keys {
         let name = key.name.to_ascii_lowercase();
         let rate = name.strip_prefix("baudrate_").map(str::parse);
         if let Some(Ok(rate)) = rate
-            && field::flag(section, key.name, findings) == Some(true)
+            && field::flag(section, &key.name, findings) == Some(true)
         {
             rates.insert(rate);
         }

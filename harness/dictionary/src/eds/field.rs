@@ -1,27 +1,27 @@
 //! Typed values of keys, with a finding where a value is not of its type.
 
-use super::Finding;
-use crate::ini::{Key, Section};
+use super::finding::Finding;
+use super::{Key, Section, rules};
 use crate::integer::Integer;
 use crate::{DataType, Default, Number};
 
 /// The value of `name` in `section`; `None` if the key is missing or empty.
-pub(super) fn key<'s, 'a>(section: &'s Section<'a>, name: &str) -> Option<&'s Key<'a>> {
+pub(super) fn key<'s>(section: &'s Section, name: &str) -> Option<&'s Key> {
     section.key(name).filter(|key| !key.value.is_empty())
 }
 
-pub(super) fn text(section: &Section<'_>, name: &str) -> Option<String> {
-    key(section, name).map(|key| key.value.to_owned())
+pub(super) fn text(section: &Section, name: &str) -> Option<String> {
+    key(section, name).map(|key| key.value.clone())
 }
 
 /// An unsigned number that fits `T`.
 pub(super) fn unsigned<T: TryFrom<i128>>(
-    section: &Section<'_>,
+    section: &Section,
     name: &str,
     findings: &mut Vec<Finding>,
 ) -> Option<T> {
     let key = key(section, name)?;
-    let number = Integer::parse(key.value).and_then(|integer| T::try_from(integer.value).ok());
+    let number = Integer::parse(&key.value).and_then(|integer| T::try_from(integer.value).ok());
     if number.is_none() {
         findings.push(refused(key, "a number that fits"));
     }
@@ -29,17 +29,17 @@ pub(super) fn unsigned<T: TryFrom<i128>>(
 }
 
 /// 0 or 1; any other number means 1.
-pub(super) fn flag(section: &Section<'_>, name: &str, findings: &mut Vec<Finding>) -> Option<bool> {
+pub(super) fn flag(section: &Section, name: &str, findings: &mut Vec<Finding>) -> Option<bool> {
     let key = key(section, name)?;
-    let number = Integer::parse(key.value).map(|integer| integer.value);
+    let number = Integer::parse(&key.value).map(|integer| integer.value);
     match number {
         Some(0 | 1) => {}
-        Some(_) => findings.push(Finding {
-            line: key.line,
-            text: format!("`{}` is neither 0 nor 1", entry(key)),
-            help: "read as 1".to_owned(),
-            lost: false,
-        }),
+        Some(_) => findings.push(Finding::new(
+            &rules::FLAG,
+            key.line,
+            format!("`{}` is neither 0 nor 1", entry(key)),
+            "read as 1",
+        )),
         None => findings.push(refused(key, "0 or 1")),
     }
     number.map(|number| number != 0)
@@ -47,13 +47,13 @@ pub(super) fn flag(section: &Section<'_>, name: &str, findings: &mut Vec<Finding
 
 /// A limit of an entry of type `data_type`.
 pub(super) fn limit(
-    section: &Section<'_>,
+    section: &Section,
     name: &str,
     data_type: DataType,
     findings: &mut Vec<Finding>,
 ) -> Option<Number> {
     let key = key(section, name)?;
-    let number = number(key.value, data_type);
+    let number = number(&key.value, data_type);
     if number.is_none() {
         findings.push(refused(key, "a whole number or $NODEID plus one"));
     }
@@ -62,33 +62,32 @@ pub(super) fn limit(
 
 /// The value of `name` as a default of an entry of type `data_type`.
 pub(super) fn default(
-    section: &Section<'_>,
+    section: &Section,
     name: &str,
     data_type: DataType,
     findings: &mut Vec<Finding>,
 ) -> Option<Default> {
     let key = key(section, name)?;
     let default = if data_type.is_text() {
-        Some(Default::Text(key.value.to_owned()))
+        Some(Default::Text(key.value.clone()))
     } else if data_type.is_real() {
-        real(key.value, data_type)
+        real(&key.value, data_type)
     } else {
-        number(key.value, data_type)
+        number(&key.value, data_type)
             .map(Default::Number)
             .or_else(|| {
-                matches!(data_type, DataType::Unknown(_))
-                    .then(|| Default::Text(key.value.to_owned()))
+                matches!(data_type, DataType::Unknown(_)).then(|| Default::Text(key.value.clone()))
             })
     };
     match &default {
         None => findings.push(refused(key, "a value of its data type")),
         Some(value) if data_type.bits().is_some() && value.bytes(data_type, 1).is_none() => {
-            findings.push(Finding {
-                line: key.line,
-                text: format!("`{}` does not fit its data type {data_type:?}", entry(key)),
-                help: "correct the value or the DataType".to_owned(),
-                lost: false,
-            });
+            findings.push(Finding::new(
+                &rules::DEFAULT_NOT_OF_TYPE,
+                key.line,
+                format!("`{}` does not fit its data type {data_type:?}", entry(key)),
+                "correct the value or the DataType",
+            ));
         }
         Some(_) => {}
     }
@@ -130,15 +129,15 @@ fn number(text: &str, data_type: DataType) -> Option<Number> {
     }
 }
 
-fn refused(key: &Key<'_>, wanted: &str) -> Finding {
-    Finding {
-        line: key.line,
-        text: format!("`{}` is not {wanted}", entry(key)),
-        help: "the key is ignored".to_owned(),
-        lost: true,
-    }
+fn refused(key: &Key, wanted: &str) -> Finding {
+    Finding::losing(
+        &rules::UNREADABLE_VALUE,
+        key.line,
+        format!("`{}` is not {wanted}", entry(key)),
+        "the key is ignored",
+    )
 }
 
-fn entry(key: &Key<'_>) -> String {
+fn entry(key: &Key) -> String {
     format!("{}={}", key.name, key.value)
 }

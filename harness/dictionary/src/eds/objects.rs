@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::{Finding, field};
-use crate::ini::Section;
+use super::place::{Place, place};
+use super::{Finding, Section, field, rules};
 use crate::{Access, DataType, Default, Dictionary, Entry, Number, Object, ObjectKind};
 
-pub(super) fn read(sections: &[Section<'_>], findings: &mut Vec<Finding>) -> Dictionary {
+pub(super) fn read(sections: &[Section], findings: &mut Vec<Finding>) -> Dictionary {
     let mut objects: BTreeMap<u16, Object> = BTreeMap::new();
     for section in sections {
-        if let Some(Place::Object(index)) = place(section.name) {
+        if let Some(Place::Object(index)) = place(&section.name) {
             match objects.get(&index) {
                 Some(first) => findings.push(repeated(section, first.line)),
                 None => {
@@ -20,7 +20,7 @@ pub(super) fn read(sections: &[Section<'_>], findings: &mut Vec<Finding>) -> Dic
     }
     let mut lines: BTreeMap<(u16, u8), usize> = BTreeMap::new();
     for section in sections {
-        if let Some(Place::Entry(index, sub)) = place(section.name) {
+        if let Some(Place::Entry(index, sub)) = place(&section.name) {
             let first = *lines.entry((index, sub)).or_insert(section.line);
             if first != section.line {
                 findings.push(repeated(section, first));
@@ -36,36 +36,7 @@ pub(super) fn read(sections: &[Section<'_>], findings: &mut Vec<Finding>) -> Dic
     objects.into_values().collect()
 }
 
-enum Place {
-    Object(u16),
-    Entry(u16, u8),
-}
-
-/// Which object or entry a section is about: `1018`, `1018sub1`, both in hexadecimal.
-fn place(name: &str) -> Option<Place> {
-    let index = hexadecimal(name.get(..4)?)?;
-    let rest = name.get(4..)?;
-    if rest.is_empty() {
-        return Some(Place::Object(index));
-    }
-    let sub = rest
-        .get(..3)
-        .filter(|word| word.eq_ignore_ascii_case("sub"))
-        .and_then(|_| rest.get(3..))?;
-    Some(Place::Entry(
-        index,
-        u8::try_from(hexadecimal(sub.trim())?).ok()?,
-    ))
-}
-
-fn hexadecimal(digits: &str) -> Option<u16> {
-    digits
-        .bytes()
-        .all(|digit| digit.is_ascii_hexdigit())
-        .then(|| u16::from_str_radix(digits, 16).ok())?
-}
-
-fn object(index: u16, section: &Section<'_>, findings: &mut Vec<Finding>) -> Object {
+fn object(index: u16, section: &Section, findings: &mut Vec<Finding>) -> Object {
     let code = field::unsigned(section, "ObjectType", findings).unwrap_or(7);
     let kind = ObjectKind::from_code(code);
     let mut entries = BTreeMap::new();
@@ -89,13 +60,13 @@ fn object(index: u16, section: &Section<'_>, findings: &mut Vec<Finding>) -> Obj
 }
 
 /// An object whose entries have sections while it has none.
-fn orphan(index: u16, section: &Section<'_>, findings: &mut Vec<Finding>) -> Object {
-    findings.push(Finding {
-        line: section.line,
-        text: format!("[{}] belongs to an object without a section", section.name),
-        help: format!("taken as a record; add [{index:04X}]"),
-        lost: false,
-    });
+fn orphan(index: u16, section: &Section, findings: &mut Vec<Finding>) -> Object {
+    findings.push(Finding::new(
+        &rules::ORPHAN,
+        section.line,
+        format!("[{}] belongs to an object without a section", section.name),
+        format!("taken as a record; add [{index:04X}]"),
+    ));
     Object {
         index,
         name: String::new(),
@@ -107,7 +78,7 @@ fn orphan(index: u16, section: &Section<'_>, findings: &mut Vec<Finding>) -> Obj
 
 /// `CompactSubObj=N`: entries 1 to N are as the object's section says, entry 0 counts them.
 fn compact_entries(
-    section: &Section<'_>,
+    section: &Section,
     count: u8,
     findings: &mut Vec<Finding>,
 ) -> BTreeMap<u8, Entry> {
@@ -135,7 +106,7 @@ fn compact_entries(
     std::iter::once((0, number)).chain(each).collect()
 }
 
-fn entry(section: &Section<'_>, findings: &mut Vec<Finding>) -> Entry {
+fn entry(section: &Section, findings: &mut Vec<Finding>) -> Entry {
     let data_type = data_type(section, findings);
     Entry {
         name: field::text(section, "ParameterName").unwrap_or_default(),
@@ -149,32 +120,33 @@ fn entry(section: &Section<'_>, findings: &mut Vec<Finding>) -> Entry {
     }
 }
 
-fn data_type(section: &Section<'_>, findings: &mut Vec<Finding>) -> DataType {
+fn data_type(section: &Section, findings: &mut Vec<Finding>) -> DataType {
     match field::unsigned(section, "DataType", findings) {
         Some(code) => DataType::from_code(code),
         None => {
             let domain = field::key(section, "ObjectType").is_some_and(|key| {
-                crate::integer::Integer::parse(key.value).is_some_and(|code| code.value == 2)
+                crate::integer::Integer::parse(&key.value).is_some_and(|code| code.value == 2)
             });
             if domain {
                 return DataType::Domain;
             }
-            findings.push(Finding {
-                line: section.line,
-                text: format!("[{}] has no DataType that can be read", section.name),
-                help: "its values have no size".to_owned(),
-                lost: false,
-            });
+            findings.push(Finding::new(
+                &rules::DATA_TYPE,
+                section.line,
+                format!("[{}] has no DataType that can be read", section.name),
+                "its values have no size; add the DataType",
+            ));
             DataType::Unknown(0)
         }
     }
 }
 
-fn access(section: &Section<'_>, findings: &mut Vec<Finding>) -> Access {
+fn access(section: &Section, findings: &mut Vec<Finding>) -> Access {
     let key = field::key(section, "AccessType");
-    key.and_then(|key| Access::from_word(key.value))
+    key.and_then(|key| Access::from_word(&key.value))
         .unwrap_or_else(|| {
             findings.push(Finding {
+                rule: &rules::ACCESS_TYPE,
                 line: key.map_or(section.line, |key| key.line),
                 text: match key {
                     Some(key) => format!("`{}` is no access type", key.value),
@@ -187,11 +159,11 @@ fn access(section: &Section<'_>, findings: &mut Vec<Finding>) -> Access {
         })
 }
 
-fn repeated(section: &Section<'_>, first: usize) -> Finding {
-    Finding {
-        line: section.line,
-        text: format!("[{}] is there a second time", section.name),
-        help: format!("the one in line {first} counts"),
-        lost: true,
-    }
+pub(super) fn repeated(section: &Section, first: usize) -> Finding {
+    Finding::losing(
+        &rules::REPEATED_SECTION,
+        section.line,
+        format!("[{}] is there a second time", section.name),
+        format!("the one in line {first} counts"),
+    )
 }
