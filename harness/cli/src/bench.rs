@@ -1,14 +1,17 @@
 //! The simulated bench: a reference device on simulated buses, with what its description connects to it.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{Medium, Settings, UnknownFault};
 use fieldproof_link::sim::{Builder, SimLane};
-use fieldproof_link::{Lane, Parity, Participant, PortIndex, SerialSettings, StopBits};
+use fieldproof_link::{
+    Lane, Parity, Participant, PortIndex, SerialSettings, StimulusKind, StopBits,
+};
 use fieldproof_run::Bench;
 use fieldproof_suite::device::{self, PortDescription};
-use fieldproof_suite::model::Effect;
+use fieldproof_suite::model::{Effect, StimulusName};
 
 use crate::library::Device;
 
@@ -23,12 +26,37 @@ pub struct Behaviour {
     pub seed: u64,
 }
 
+/// Why a device could not be connected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NotConnected {
+    /// It has no such fault or variant.
+    Unknown(UnknownFault),
+    /// There is no reference device of this name that could be simulated.
+    NotSimulated(String),
+}
+
+impl fmt::Display for NotConnected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            NotConnected::Unknown(error) => error.fmt(f),
+            NotConnected::NotSimulated(name) => {
+                write!(f, "there is no reference device \"{name}\" to simulate it")
+            }
+        }
+    }
+}
+
+impl std::error::Error for NotConnected {}
+
 /// Connects `device` to simulated buses, set as its description says, with all that stands around it.
 ///
 /// # Errors
-/// It has no such fault or variant.
-pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane, UnknownFault> {
+/// It has no such fault or variant, or no reference device.
+pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane, NotConnected> {
     let description = &device.description;
+    let Some(kind) = device.kind else {
+        return Err(NotConnected::NotSimulated(description.device.clone()));
+    };
     let settings = Settings {
         node: description.canopen.as_ref().map(|canopen| canopen.node),
         address: description.modbus.as_ref().map(|modbus| modbus.address),
@@ -36,11 +64,11 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
         fault: behaviour.fault.clone(),
         variant: behaviour.variant.clone(),
     };
-    let participant = (device.kind.build)(&settings)?;
+    let participant = (kind.build)(&settings).map_err(NotConnected::Unknown)?;
     let mut builder = Builder::new();
     let mut ports = Vec::new();
     let mut companions: Vec<(PortIndex, Box<dyn Participant>)> = Vec::new();
-    for port in device.kind.ports {
+    for port in kind.ports {
         let described = description.ports.get(port.role);
         ports.push(match described {
             Some(PortDescription::Can { bit_rate }) => builder.can_bus(port.role, *bit_rate),
@@ -99,19 +127,48 @@ fn serial(baud: u32, parity: device::Parity, stop_bits: u8) -> SerialSettings {
 
 /// What `lane` has and permits, for the engine.
 pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>) -> Bench {
+    let ports = lane.ports().iter().map(|port| port.name.clone()).collect();
+    bench_of(device, ports, lane.offers().into_iter().collect(), permits)
+}
+
+/// As far as it is known of a device that cannot be simulated: its ports, and no stimulus.
+pub(crate) fn described_bench(device: &Device, permits: &BTreeSet<Effect>) -> Bench {
+    let ports = device.description.ports.keys().cloned().collect();
+    bench_of(device, ports, BTreeSet::new(), permits)
+}
+
+/// A bench file takes away what it does not mention.
+fn bench_of(
+    device: &Device,
+    mut ports: BTreeSet<String>,
+    mut stimuli: BTreeSet<StimulusKind>,
+    permits: &BTreeSet<Effect>,
+) -> Bench {
+    let mut permits = permits.clone();
+    if let Some(place) = &device.place {
+        ports.retain(|role| place.ports.contains(role));
+        permits.retain(|effect| place.permits.contains(effect));
+        if let Some(there) = &place.stimuli {
+            let there: BTreeSet<StimulusKind> =
+                there.iter().map(|name| stimulus_kind(*name)).collect();
+            stimuli.retain(|kind| there.contains(kind));
+        }
+    }
+    let description = &device.description;
     Bench {
-        ports: lane.ports().iter().map(|port| port.name.clone()).collect(),
-        stimuli: lane.offers().into_iter().collect(),
-        permits: permits.clone(),
-        node: device
-            .description
-            .canopen
-            .as_ref()
-            .map(|canopen| canopen.node),
-        address: device
-            .description
-            .modbus
-            .as_ref()
-            .map(|modbus| modbus.address),
+        ports,
+        stimuli,
+        permits,
+        node: description.canopen.as_ref().map(|canopen| canopen.node),
+        address: description.modbus.as_ref().map(|modbus| modbus.address),
+    }
+}
+
+const fn stimulus_kind(name: StimulusName) -> StimulusKind {
+    match name {
+        StimulusName::Power => StimulusKind::Power,
+        StimulusName::ProcessValue => StimulusKind::ProcessValue,
+        StimulusName::Condition => StimulusKind::Condition,
+        StimulusName::Setting => StimulusKind::Setting,
     }
 }

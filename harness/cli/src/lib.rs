@@ -18,10 +18,10 @@ mod screen;
 mod select;
 mod stop;
 
-pub use bench::Behaviour;
+pub use bench::{Behaviour, NotConnected};
 pub use complaint::Complaint;
 pub use exit::Exit;
-pub use library::{Device, Library};
+pub use library::{Device, Library, Place};
 pub use options::{
     CheckOptions, Color, Command, EffectName, Format, ListOptions, Options, ProveOptions,
     RunOptions, SchemaKind, Selection,

@@ -1,14 +1,18 @@
 //! The suites and devices of a command: what the program carries, or what the user gave in its place.
 
+mod benches;
+mod near;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fieldproof_devices::{DeviceKind, Medium};
+use fieldproof_devices::{DeviceKind, Fault, Medium, Variant};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
+use fieldproof_suite::model::{Effect, StimulusName};
 use fieldproof_suite::{Diagnostic, SourceFile, Suite};
 
 use crate::bench;
@@ -17,21 +21,51 @@ use crate::embedded;
 use crate::input;
 use crate::options::Selection;
 use crate::problems;
+use benches::{LinksAre, is_bench};
 
 /// A device with everything that is known of it.
+#[derive(Clone)]
 pub struct Device {
     /// What it claims.
     pub description: DeviceDescription,
     /// Its object dictionary, if it has a CANopen side.
     pub dictionary: Option<Dictionary>,
-    /// The reference device of that name.
-    pub kind: &'static DeviceKind,
+    /// The reference device of that name; without one, the device cannot be simulated.
+    pub kind: Option<&'static DeviceKind>,
+    /// Where a bench has it.
+    pub place: Option<Place>,
+}
+
+/// What a bench says of a device.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// What the bench calls it.
+    pub name: String,
+    /// The roles of the ports that are connected.
+    pub ports: BTreeSet<String>,
+    /// The stimuli there are; those that the links offer if nothing is said.
+    pub stimuli: Option<BTreeSet<StimulusName>>,
+    /// What is permitted.
+    pub permits: BTreeSet<Effect>,
 }
 
 impl Device {
-    /// Its name.
+    /// The faults its reference device can have.
+    pub fn faults(&self) -> &'static [Fault] {
+        self.kind.map_or(&[], |kind| kind.faults)
+    }
+
+    /// The legal variants of its reference device.
+    pub fn variants(&self) -> &'static [Variant] {
+        self.kind.map_or(&[], |kind| kind.variants)
+    }
+
+    /// Its name on the bench, or else that of its description.
     pub fn name(&self) -> &str {
-        &self.description.device
+        match &self.place {
+            Some(place) => &place.name,
+            None => &self.description.device,
+        }
     }
 }
 
@@ -41,6 +75,8 @@ pub struct Library {
     pub suites: Vec<Suite>,
     /// The devices that are asked for, by name.
     pub devices: Vec<Device>,
+    /// How many benches were read.
+    pub benches: usize,
     /// What is wrong with the files but does not keep them from being used.
     pub warnings: Vec<Problem>,
 }
@@ -51,10 +87,36 @@ impl Library {
     /// # Errors
     /// [`Complaint`]: a file is wrong or cannot be read, or there is nothing of a name.
     pub fn load(selection: &Selection) -> Result<Library, Complaint> {
-        let mut reader = Reader::default();
-        reader.arguments(&selection.suites);
-        reader.read_suites();
-        reader.read_devices();
+        let mut reader = Reader::of(selection);
+        reader.read_benches(LinksAre::Named);
+        reader.finish(selection)
+    }
+
+    /// Reads what `selection` asks for, to be played on the bench in the file at `bench`: the devices are those that
+    /// stand on it.
+    ///
+    /// # Errors
+    /// As [`Library::load`]; or the bench has a link that cannot be opened.
+    pub fn load_on_bench(selection: &Selection, bench: &Path) -> Result<Library, Complaint> {
+        let mut reader = Reader::of(selection);
+        reader.benches.clear();
+        reader.bench(bench);
+        reader.devices = reader.read_benches(LinksAre::Opened);
+        reader.finish(selection)
+    }
+
+    /// Reads what `selection` asks for and looks at it more closely: at the benches that the program carries too, if
+    /// nothing else is asked for, and for deviations from checks that there are not.
+    ///
+    /// # Errors
+    /// As [`Library::load`].
+    pub fn load_closely(selection: &Selection) -> Result<Library, Complaint> {
+        let mut reader = Reader::of(selection);
+        if selection.suites.is_empty() {
+            reader.carried_benches();
+        }
+        reader.read_benches(LinksAre::Named);
+        reader.look_for_checks();
         reader.finish(selection)
     }
 }
@@ -66,6 +128,15 @@ enum Folder {
 }
 
 impl Folder {
+    /// The folder that is called so from here.
+    fn below(&self, name: &str) -> Folder {
+        match self {
+            Folder::OnDisk(folder) => Folder::OnDisk(folder.join(name)),
+            Folder::Embedded(folder) if name == "." => Folder::Embedded(folder.clone()),
+            Folder::Embedded(folder) => Folder::Embedded(format!("{folder}/{name}")),
+        }
+    }
+
     fn file(&self, name: &str) -> Result<SourceFile, Box<Problem>> {
         match self {
             Folder::OnDisk(folder) => input::read(&folder.join(name)),
@@ -103,9 +174,25 @@ struct Reader {
     names: Vec<String>,
     suites: Vec<Suite>,
     devices: BTreeMap<String, Device>,
+    /// The files of the descriptions, where deviations from unknown checks are shown.
+    description_files: BTreeMap<String, SourceFile>,
+    benches: Vec<(SourceFile, Folder)>,
+    /// The names of all devices that there is a description of, also of those that are not played on.
+    described: BTreeSet<String>,
+    /// The names of the devices whose folders were given for names.
+    folders: BTreeMap<String, String>,
 }
 
 impl Reader {
+    fn of(selection: &Selection) -> Reader {
+        let mut reader = Reader::default();
+        reader.arguments(&selection.suites);
+        reader.read_suites();
+        reader.read_devices();
+        reader.device_folders(&selection.devices);
+        reader
+    }
+
     fn arguments(&mut self, arguments: &[String]) {
         for argument in arguments {
             // It would be the beginning of every id.
@@ -149,6 +236,10 @@ impl Reader {
             Ok(file) if path.file_name().is_some_and(|name| name == "device.yaml") => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
                 self.descriptions.push((file, Folder::OnDisk(folder)));
+            }
+            Ok(file) if is_bench(&file) => {
+                let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+                self.benches.push((file, Folder::OnDisk(folder)));
             }
             Ok(file) => self.files.push(file),
         }
@@ -237,21 +328,22 @@ impl Reader {
     }
 
     fn device(&mut self, file: &SourceFile, folder: &Folder) {
+        if let Some(device) = self.read_device(file, folder) {
+            let name = device.description.device.clone();
+            self.description_files.insert(name.clone(), file.clone());
+            self.devices.insert(name, device);
+        }
+    }
+
+    fn read_device(&mut self, file: &SourceFile, folder: &Folder) -> Option<Device> {
         let description = match fieldproof_suite::load_device(file) {
             Ok(description) => description,
-            Err(diagnostics) => return self.diagnostics(&diagnostics, std::slice::from_ref(file)),
+            Err(diagnostics) => {
+                self.diagnostics(&diagnostics, std::slice::from_ref(file));
+                return None;
+            }
         };
-        let Some(kind) = fieldproof_devices::kind(&description.device) else {
-            let known: Vec<&str> = fieldproof_devices::kinds()
-                .iter()
-                .map(|kind| kind.name)
-                .collect();
-            let name = &description.device;
-            let message = format!("there is no reference device \"{name}\" to simulate it");
-            let problem = Problem::new(Severity::Error, message).in_file(file.path.clone());
-            self.problems.push(with_choice(problem, name, &known));
-            return;
-        };
+        let kind = fieldproof_devices::kind(&description.device);
         self.ports(&description, kind, &file.path);
         let dictionary = description
             .canopen
@@ -264,18 +356,35 @@ impl Reader {
         if let Some(map) = map {
             self.register_map(folder, map);
         }
-        let device = Device {
+        self.described.insert(description.device.clone());
+        Some(Device {
             description,
             dictionary,
             kind,
-        };
-        self.devices.insert(device.name().to_owned(), device);
+            place: None,
+        })
     }
 
-    /// The ports that a description gives must be those of the reference device.
-    fn ports(&mut self, description: &DeviceDescription, kind: &DeviceKind, path: &str) {
+    /// The ports that a description gives must be those of the reference device, if there is one.
+    fn ports(
+        &mut self,
+        description: &DeviceDescription,
+        kind: Option<&'static DeviceKind>,
+        path: &str,
+    ) {
+        let fail = |message: String| Problem::new(Severity::Error, message).in_file(path);
         for (role, port) in &description.ports {
-            let fail = |message: String| Problem::new(Severity::Error, message).in_file(path);
+            if let PortDescription::Serial {
+                companion: Some(name),
+                ..
+            } = port
+                && !bench::COMPANIONS.contains(&name.as_str())
+            {
+                let problem = fail(format!("no companion is called \"{name}\""));
+                self.problems
+                    .push(with_choice(problem, name, &bench::COMPANIONS));
+            }
+            let Some(kind) = kind else { continue };
             let Some(simulated) = kind.ports.iter().find(|simulated| simulated.role == role) else {
                 let known: Vec<&str> = kind.ports.iter().map(|port| port.role).collect();
                 let problem = fail(format!("the reference device has no port \"{role}\""));
@@ -283,15 +392,8 @@ impl Reader {
                 continue;
             };
             match (port, simulated.medium) {
-                (PortDescription::Can { .. }, Medium::Can { .. }) => {}
-                (PortDescription::Serial { companion, .. }, Medium::Serial(_)) => {
-                    let unknown = |name: &&String| !bench::COMPANIONS.contains(&name.as_str());
-                    if let Some(name) = companion.as_ref().filter(unknown) {
-                        let problem = fail(format!("no companion is called \"{name}\""));
-                        self.problems
-                            .push(with_choice(problem, name, &bench::COMPANIONS));
-                    }
-                }
+                (PortDescription::Can { .. }, Medium::Can { .. })
+                | (PortDescription::Serial { .. }, Medium::Serial(_)) => {}
                 (_, Medium::Can { .. }) => {
                     self.problems
                         .push(fail(format!("the port \"{role}\" is a CAN port")));
@@ -340,7 +442,7 @@ impl Reader {
 
     /// A suite may be for one device only, and that must be one there is.
     fn check_devices_of_suites(&mut self) {
-        let known: Vec<&str> = self.devices.keys().map(String::as_str).collect();
+        let known: Vec<&str> = self.described.iter().map(String::as_str).collect();
         for suite in &self.suites {
             let Some(name) = suite
                 .head
@@ -372,22 +474,25 @@ impl Reader {
             return Err(Complaint::inputs(self.problems));
         }
         let known: Vec<&str> = self.devices.keys().map(String::as_str).collect();
-        for name in &selection.devices {
-            if !self.devices.contains_key(name) {
+        let asked: Vec<&str> = selection
+            .devices
+            .iter()
+            .map(|name| self.folders.get(name).unwrap_or(name).as_str())
+            .collect();
+        for name in &asked {
+            if !self.devices.contains_key(*name) {
                 return Err(Complaint::unknown("device", name, &known));
             }
         }
         let devices = self
             .devices
             .into_values()
-            .filter(|device| {
-                selection.devices.is_empty()
-                    || selection.devices.iter().any(|name| name == device.name())
-            })
+            .filter(|device| asked.is_empty() || asked.contains(&device.name()))
             .collect();
         Ok(Library {
             suites: self.suites,
             devices,
+            benches: self.benches.len(),
             warnings: self.problems,
         })
     }

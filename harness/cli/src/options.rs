@@ -71,8 +71,8 @@ pub struct Selection {
     /// carries if none is given. A `device.yaml` takes the place of the description of that device.
     #[arg(value_name = "SUITE")]
     pub suites: Vec<String>,
-    /// Only this device, by name; may be repeated.
-    #[arg(long = "device", value_name = "NAME")]
+    /// Only this device, by name or by the folder of its device.yaml; may be repeated.
+    #[arg(long = "device", value_name = "NAME|DIR")]
     pub devices: Vec<String>,
     /// Only cases whose id is like this, in which `*` stands for anything; may be repeated.
     #[arg(long = "case", value_name = "PATTERN")]
@@ -91,7 +91,10 @@ pub struct RunOptions {
     /// Documented deviations fail, and only the strict abort codes pass.
     #[arg(long)]
     pub strict: bool,
-    /// Permit only these effects; a simulated bench permits all.
+    /// Play on the devices of this bench, and do only what it permits.
+    #[arg(long, value_name = "FILE")]
+    pub bench: Option<PathBuf>,
+    /// Permit only these effects; without a bench file all are permitted, with one only those that it lists.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     pub allow: Vec<EffectName>,
     /// Do not permit these effects.
@@ -228,6 +231,8 @@ impl ValueEnum for EffectName {
         ];
         &NAMES
     }
+    /// A bench.
+    Bench,
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(PossibleValue::new(effect_name(self.0)))

@@ -3,14 +3,13 @@
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
-use fieldproof_devices::UnknownFault;
 use fieldproof_link::Lane;
 use fieldproof_record::Sink;
 use fieldproof_run::{LaneJob, LaneOutcome, play_lane, skip_reason, suites_for};
 use fieldproof_suite::model::Effect;
 use fieldproof_suite::{Environment, Suite};
 
-use crate::bench::{self, Behaviour};
+use crate::bench::{self, Behaviour, NotConnected};
 use crate::glob;
 use crate::library::{Device, Library};
 use crate::options::EFFECTS;
@@ -77,14 +76,14 @@ impl Plan {
 /// set.
 ///
 /// # Errors
-/// The device has no such fault or variant.
+/// The device has no such fault or variant, or cannot be simulated.
 pub fn play(
     library: &Library,
     device: &Device,
     plan: &Plan,
     sink: &mut dyn Sink,
     stop: &AtomicBool,
-) -> Result<LaneOutcome, UnknownFault> {
+) -> Result<LaneOutcome, NotConnected> {
     let mut lane = bench::connect(device, &plan.behaviour)?;
     let bench = bench::bench(device, &lane, &plan.permits);
     let behaviour = &plan.behaviour;
@@ -116,14 +115,19 @@ pub(crate) struct PlannedCase {
 /// What [`play`] would do, suite by suite, as far as it can be known beforehand.
 ///
 /// # Errors
-/// The device has no such fault or variant.
+/// The device has no such fault or variant, or cannot be simulated.
 pub(crate) fn preview<'l>(
     library: &'l Library,
     device: &'l Device,
     plan: &Plan,
-) -> Result<Vec<(&'l Suite, Vec<PlannedCase>)>, UnknownFault> {
-    let lane = bench::connect(device, &plan.behaviour)?;
-    let bench = bench::bench(device, &lane as &dyn Lane, &plan.permits);
+) -> Result<Vec<(&'l Suite, Vec<PlannedCase>)>, NotConnected> {
+    let bench = match device.kind {
+        Some(_) => {
+            let lane = bench::connect(device, &plan.behaviour)?;
+            bench::bench(device, &lane as &dyn Lane, &plan.permits)
+        }
+        None => bench::described_bench(device, &plan.permits),
+    };
     let environment = Environment {
         node: bench.node,
         address: bench.address,

@@ -72,3 +72,13 @@ fn span(at: Position) -> Span {
         end_column: at.end_column,
     }
 }
+/// `problem` at its place in `text`.
+pub(crate) fn placed(problem: Problem, at: Position, label: &str, text: &Arc<str>) -> Problem {
+    Problem {
+        at: span(at),
+        source: SourceText::Whole(Arc::clone(text)),
+        label: label.to_owned(),
+        ..problem
+    }
+}
+

@@ -44,6 +44,23 @@ pub(crate) fn patterns_must_match(library: &Library, plan: &Plan) -> Result<(), 
     Ok(())
 }
 
+/// Every device must be one that this version can play on.
+pub(crate) fn must_be_simulated(devices: &[&Device]) -> Result<(), Complaint> {
+    let Some(device) = devices.iter().find(|device| device.kind.is_none()) else {
+        return Ok(());
+    };
+    let name = &device.description.device;
+    let known: Vec<&str> = fieldproof_devices::kinds()
+        .iter()
+        .map(|kind| kind.name)
+        .collect();
+    let message = format!("there is no reference device \"{name}\" to simulate it");
+    let problem = Problem::new(Severity::Error, message)
+        .note("this version plays in simulation only; a device without a reference device can be described and checked")
+        .note("`fieldproof run --dry-run` shows what would be played on it");
+    Err(Complaint::input(with_choice(problem, name, &known)))
+}
+
 /// There is nothing to do.
 pub(crate) fn nothing_selected() -> Complaint {
     let problem = Problem::new(Severity::Error, "nothing is selected")

@@ -14,7 +14,7 @@ pub(crate) fn check(options: &CheckOptions, screen: &mut Screen) -> Result<Exit,
         suites: options.paths.clone(),
         ..Selection::default()
     };
-    let (problems, exit, read) = match Library::load(&selection) {
+    let (problems, exit, read) = match Library::load_closely(&selection) {
         Ok(library) => {
             let read = counted(&library);
             (library.warnings, Exit::Passed, read)
@@ -40,8 +40,13 @@ fn counted(library: &Library) -> String {
         .iter()
         .map(|suite| suite.cases().count())
         .sum();
+    let benches = match library.benches {
+        0 => String::new(),
+        1 => ", 1 bench".to_owned(),
+        count => format!(", {count} benches"),
+    };
     format!(
-        "{} with {}, {}: ",
+        "{} with {}, {}{benches}: ",
         number(library.suites.len(), "suite"),
         number(cases, "case"),
         number(library.devices.len(), "device"),

@@ -59,10 +59,9 @@ fn listed(device: &Device) -> ListedDevice<'_> {
             .iter()
             .map(|deviation| deviation.check.as_str())
             .collect(),
-        faults: device.kind.faults.iter().map(|fault| fault.name).collect(),
+        faults: device.faults().iter().map(|fault| fault.name).collect(),
         variants: device
-            .kind
-            .variants
+            .variants()
             .iter()
             .map(|variant| variant.name)
             .collect(),

@@ -77,9 +77,10 @@ fn rounds<'l>(
     if devices.is_empty() {
         return Err(select::nothing_selected());
     }
+    select::must_be_simulated(&devices)?;
     let known: BTreeSet<&str> = devices
         .iter()
-        .flat_map(|device| device.kind.faults.iter().map(|it| it.name))
+        .flat_map(|device| device.faults().iter().map(|it| it.name))
         .collect();
     if let Some(name) = options
         .faults
@@ -104,10 +105,10 @@ fn rounds<'l>(
             });
         };
         round(Guise::AsItIs, "", None, None);
-        for variant in device.kind.variants {
+        for variant in device.variants() {
             round(Guise::Variant(variant.name), "", None, Some(variant.name));
         }
-        for fault in device.kind.faults {
+        for fault in device.faults() {
             if options.faults.is_empty() || options.faults.iter().any(|name| name == fault.name) {
                 round(
                     Guise::Fault(fault.name),

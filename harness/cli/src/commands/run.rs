@@ -24,13 +24,17 @@ use lanes::Stage;
 
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
 pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
-    let library = Library::load(&options.selection)?;
+    let library = match &options.bench {
+        Some(bench) => Library::load_on_bench(&options.selection, bench)?,
+        None => Library::load(&options.selection)?,
+    };
     let plan = plan(options);
     select::patterns_must_match(&library, &plan)?;
     let devices = devices(&library, &plan)?;
     if options.dry_run {
         return preview::show(&library, &devices, &plan, options, screen);
     }
+    select::must_be_simulated(&devices)?;
     let stop = stop::on_interrupt()?;
     let started = Instant::now();
     let reports = Reports::open(&options.reports)?;
@@ -153,18 +157,10 @@ fn plan(options: &RunOptions) -> Plan {
 
 /// The devices that there is something to play on.
 fn devices<'l>(library: &'l Library, plan: &Plan) -> Result<Vec<&'l Device>, Complaint> {
-    let faults = |device: &Device| {
-        device
-            .kind
-            .faults
-            .iter()
-            .map(|it| it.name)
-            .collect::<Vec<_>>()
-    };
+    let faults = |device: &Device| device.faults().iter().map(|it| it.name).collect::<Vec<_>>();
     let variants = |device: &Device| {
         device
-            .kind
-            .variants
+            .variants()
             .iter()
             .map(|it| it.name)
             .collect::<Vec<_>>()

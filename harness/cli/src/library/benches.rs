@@ -1,0 +1,211 @@
+//! Benches: every device that stands on one is found, and must be as the bench says.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use fieldproof_report::{Problem, Severity};
+use fieldproof_suite::bench::{BenchDescription, BenchDevice, LinkKind};
+use fieldproof_suite::device::PortDescription;
+use fieldproof_suite::model::Located;
+use fieldproof_suite::{Position, SourceFile, load_bench};
+
+use super::{Device, Folder, Place, Reader, source_file};
+use crate::complaint::with_choice;
+use crate::{embedded, input, problems};
+
+/// What is done with the links of a bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum LinksAre {
+    /// Only looked at.
+    Named,
+    /// Opened, so that those that cannot be are errors.
+    Opened,
+}
+
+/// Whether a file is a bench, by its keys: it may have any name.
+pub(super) fn is_bench(file: &SourceFile) -> bool {
+    file.text.lines().any(|line| line.starts_with("bench:"))
+}
+
+/// A bench with what is needed to show what is wrong with it.
+struct Shown<'a> {
+    path: &'a str,
+    text: Arc<str>,
+}
+
+impl Shown<'_> {
+    fn problem(&self, severity: Severity, at: Position, message: String, label: &str) -> Problem {
+        let problem = Problem::new(severity, message).in_file(self.path);
+        problems::placed(problem, at, label, &self.text)
+    }
+
+    fn error(&self, at: Position, message: String, label: &str) -> Problem {
+        self.problem(Severity::Error, at, message, label)
+    }
+}
+
+impl Reader {
+    /// The bench in the file at `path`.
+    pub(super) fn bench(&mut self, path: &Path) {
+        match input::read(path) {
+            Ok(file) => {
+                let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+                self.benches.push((file, Folder::OnDisk(folder)));
+            }
+            Err(problem) => self.problems.push(*problem),
+        }
+    }
+
+    /// The benches that the program carries.
+    pub(super) fn carried_benches(&mut self) {
+        for (path, text) in embedded::files() {
+            if let Some(folder) = path.strip_suffix("/bench.yaml") {
+                let folder = Folder::Embedded(folder.to_owned());
+                self.benches.push((source_file((path, text)), folder));
+            }
+        }
+    }
+
+    /// Reads the benches and gives back what stands on them, by name.
+    pub(super) fn read_benches(&mut self, links: LinksAre) -> BTreeMap<String, Device> {
+        let benches = std::mem::take(&mut self.benches);
+        let mut devices = BTreeMap::new();
+        for (file, folder) in &benches {
+            match load_bench(file) {
+                Ok(bench) => devices.extend(self.read_bench(&bench, file, folder, links)),
+                Err(diagnostics) => self.diagnostics(&diagnostics, std::slice::from_ref(file)),
+            }
+        }
+        self.benches = benches;
+        devices
+    }
+
+    fn read_bench(
+        &mut self,
+        bench: &BenchDescription,
+        file: &SourceFile,
+        folder: &Folder,
+        links: LinksAre,
+    ) -> Vec<(String, Device)> {
+        let shown = Shown {
+            path: &file.path,
+            text: Arc::from(file.text.as_str()),
+        };
+        let mut devices = Vec::new();
+        for on_bench in &bench.devices {
+            let Some(mut device) = self.find_device(&on_bench.device, folder, &shown) else {
+                continue;
+            };
+            self.check_ports(on_bench, &device, &shown, links);
+            self.set_addresses(on_bench, &mut device, &shown);
+            device.place = Some(Place {
+                name: on_bench.name.value.clone(),
+                ports: on_bench.ports.keys().cloned().collect(),
+                stimuli: on_bench.stimuli.clone(),
+                permits: on_bench.permits.clone(),
+            });
+            devices.push((on_bench.name.value.clone(), device));
+        }
+        devices
+    }
+
+    /// A device that a bench names, or whose folder it gives.
+    fn find_device(
+        &mut self,
+        name: &Located<String>,
+        folder: &Folder,
+        shown: &Shown<'_>,
+    ) -> Option<Device> {
+        let at = name.at;
+        let name = name.value.as_str();
+        if !(name.contains(['/', '\\']) || matches!(name, "." | "..")) {
+            let device = self.devices.get(name).cloned();
+            if device.is_none() {
+                let known: Vec<&str> = self.devices.keys().map(String::as_str).collect();
+                let message = format!("no device is called \"{name}\"");
+                let problem = shown.error(at, message, "a folder is written `./folder`");
+                self.problems.push(with_choice(problem, name, &known));
+            }
+            return device;
+        }
+        let folder = folder.below(name);
+        match folder.file("device.yaml") {
+            Ok(file) => self.read_device(&file, &folder),
+            Err(problem) => {
+                let message = format!("no description of a device is in \"{name}\"");
+                let label = "expected a folder with a device.yaml, seen from this file";
+                let why = format!("{}: {}", problem.path, problem.message);
+                self.problems
+                    .push(shown.error(at, message, label).note(why));
+                None
+            }
+        }
+    }
+
+    /// The ports must be those of the device, on links that carry them.
+    fn check_ports(
+        &mut self,
+        on_bench: &BenchDevice,
+        device: &Device,
+        shown: &Shown<'_>,
+        links: LinksAre,
+    ) {
+        let described = &device.description.ports;
+        for (role, link) in &on_bench.ports {
+            let kind = link.value.kind;
+            let Some(port) = described.get(role) else {
+                let known: Vec<&str> = described.keys().map(String::as_str).collect();
+                let message = format!("the device has no port \"{role}\"");
+                let problem = shown.error(link.at, message, "the link of this port");
+                self.problems.push(with_choice(problem, role, &known));
+                continue;
+            };
+            let (what, carried) = match port {
+                PortDescription::Can { .. } => ("CAN", kind.carries_can()),
+                PortDescription::Serial { .. } => ("serial", kind.carries_serial()),
+            };
+            if !carried {
+                let message = format!("the port \"{role}\" is a {what} port");
+                let label = format!("`{}:` carries no {what} port", kind.name());
+                self.problems.push(shown.error(link.at, message, &label));
+            } else if kind != LinkKind::Sim {
+                let severity = match links {
+                    LinksAre::Opened => Severity::Error,
+                    LinksAre::Named => Severity::Warning,
+                };
+                let message = format!("this version opens only `sim:`, not `{}:`", kind.name());
+                self.problems.push(shown.problem(
+                    severity,
+                    link.at,
+                    message,
+                    "cannot be opened yet",
+                ));
+            }
+        }
+    }
+
+    fn set_addresses(&mut self, on_bench: &BenchDevice, device: &mut Device, shown: &Shown<'_>) {
+        let description = &mut device.description;
+        if let Some(node) = &on_bench.node {
+            match &mut description.canopen {
+                Some(canopen) => canopen.node = node.value,
+                None => self.problems.push(shown.error(
+                    node.at,
+                    "the device has no CANopen side, and so no node-ID".to_owned(),
+                    "expected no `node`",
+                )),
+            }
+        }
+        if let Some(address) = &on_bench.address {
+            match &mut description.modbus {
+                Some(modbus) => modbus.address = address.value,
+                None => self.problems.push(shown.error(
+                    address.at,
+                    "the device has no Modbus side, and so no address".to_owned(),
+                    "expected no `address`",
+                )),
+            }
+        }
+    }
+}

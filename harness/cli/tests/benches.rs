@@ -1,0 +1,288 @@
+//! Benches: what stands on one is played as it says, and what is wrong with one is said.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use support::Folder;
+
+const DEVICES: [(&str, &str); 4] = [
+    ("huacheng-ssts1", "drive"),
+    ("kinco-servo", "drive"),
+    ("liaomiao-encoder", "encoder"),
+    ("teco-jn5-cm-can", "gateway"),
+];
+
+/// A bench of one simulated servo drive.
+fn bench(extra: &str) -> String {
+    format!(
+        "language: 1
+bench: mine
+devices:
+  - {{name: left, device: kinco-servo, ports: {{can: \"sim:\"}}, {extra}}}
+"
+    )
+}
+
+fn refused(folder: &Folder, arguments: &[&str], parts: &[&str]) {
+    let ran = folder.run(arguments);
+    assert_eq!(ran.exit(), Some(2), "{arguments:?}\n{}", ran.error());
+    for part in parts {
+        assert!(ran.error().contains(part), "{part}\n{}", ran.error());
+    }
+}
+
+#[test]
+fn example_benches_are_played_whole() {
+    let folder = Folder::new();
+    assert_eq!(folder.run(&["export", "mine"]).exit(), Some(0));
+    for (device, name) in DEVICES {
+        let bench = format!("mine/devices/{device}/bench.yaml");
+        let ran = folder.run(&["run", "--bench", &bench]);
+        assert_eq!(ran.exit(), Some(0), "{device}\n{}", ran.out());
+        assert!(
+            ran.out().contains(&format!("{name}  canopen.nmt")),
+            "{}",
+            ran.out()
+        );
+        assert!(!ran.out().contains("does not permit"), "{}", ran.out());
+        let checked = folder.run(&["check", &format!("mine/devices/{device}")]);
+        assert_eq!(checked.exit(), Some(0));
+        assert!(
+            checked.out().contains("1 bench: no mistakes"),
+            "{}",
+            checked.out()
+        );
+    }
+}
+
+#[test]
+fn only_what_is_listed_is_permitted_and_offered() {
+    let folder = Folder::new();
+    let dry = |extra: &str, more: &[&str]| {
+        folder.write("bench.yaml", bench(extra));
+        let mut arguments = vec!["run", "--bench", "bench.yaml", "--dry-run"];
+        arguments.extend(more);
+        folder.run(&arguments).out()
+    };
+    let nothing = dry("stimuli: []", &[]);
+    for word in ["writes", "resets"] {
+        let reason = format!("does not permit {word}");
+        assert!(nothing.contains(&reason), "{reason}\n{nothing}");
+    }
+    assert!(nothing.contains("does not offer the stimulus"), "{nothing}");
+    let all = dry(
+        "permits: [writes, persists, readdresses, moves, resets, disturbs-bus]",
+        &[],
+    );
+    assert!(!all.contains("does not permit"), "{all}");
+    assert!(!all.contains("does not offer"), "{all}");
+    let some = dry("permits: [writes]", &["--allow", "writes,resets"]);
+    assert!(some.contains("does not permit resets"), "{some}");
+    assert!(!some.contains("does not permit writes"), "{some}");
+    let none = dry("permits: [writes]", &["--deny", "writes"]);
+    assert!(none.contains("does not permit writes"), "{none}");
+}
+
+#[test]
+fn device_has_the_node_of_the_bench() {
+    let folder = Folder::new();
+    folder.write("bench.yaml", bench("node: 9, permits: [resets]"));
+    folder.write(
+        "suite.yaml",
+        support::suite("mine", "expect-boot-up:").replace(
+            "    steps:\n",
+            "    effects: [resets]\n    steps:\n      - nmt: reset-node\n",
+        ),
+    );
+    let ran = folder.run(&["run", "suite.yaml", "--bench", "bench.yaml"]);
+    assert_eq!(ran.exit(), Some(0), "{}{}", ran.out(), ran.error());
+    let journal = folder
+        .files()
+        .into_iter()
+        .find(|file| file.contains("left") && file.ends_with(".jsonl"))
+        .map(|file| folder.read(&file))
+        .unwrap();
+    assert!(journal.contains("\"id\":1801"), "{journal}");
+    assert!(!journal.contains("\"id\":1793"), "{journal}");
+}
+
+#[test]
+fn two_devices_of_one_kind_stand_side_by_side() {
+    let folder = Folder::new();
+    let two = bench("permits: []")
+        + "  - {name: right, device: kinco-servo, ports: {can: \"sim:\"}, node: 2}\n";
+    folder.write("bench.yaml", two);
+    let ran = folder.run(&["run", "canopen.nmt", "--bench", "bench.yaml"]);
+    assert!(
+        ran.out().contains("left") && ran.out().contains("right"),
+        "{}",
+        ran.out()
+    );
+    let ran = folder.run(&[
+        "run",
+        "--bench",
+        "bench.yaml",
+        "--device",
+        "right",
+        "--dry-run",
+    ]);
+    assert!(!ran.out().contains(" on left"), "{}", ran.out());
+    refused(
+        &folder,
+        &["run", "--bench", "bench.yaml", "--device", "rihgt"],
+        &["no device is called \"rihgt\"", "\"right\"?"],
+    );
+}
+
+#[test]
+fn bench_that_does_not_fit_is_refused_with_its_place() {
+    let folder = Folder::new();
+    for (wrong, parts) in [
+        (
+            bench("permits: []").replace("kinco-servo", "kinko-servo"),
+            [
+                "no device is called \"kinko-servo\"",
+                "did you mean \"kinco-servo\"?",
+                "bench.yaml:4:26",
+            ],
+        ),
+        (
+            bench("permits: []").replace("kinco-servo", "./nowhere"),
+            [
+                "no description of a device is in \"./nowhere\"",
+                "device.yaml",
+                "bench.yaml:4:26",
+            ],
+        ),
+        (
+            bench("permits: []").replace("can:", "cann:"),
+            [
+                "the device has no port \"cann\"",
+                "\"can\"?",
+                "bench.yaml:4:53",
+            ],
+        ),
+        (
+            bench("permits: []").replace("sim:", "serial:/dev/ttyUSB0"),
+            [
+                "the port \"can\" is a CAN port",
+                "`serial:` carries no CAN port",
+                "bench.yaml:4:52",
+            ],
+        ),
+        (
+            bench("permits: []").replace("sim:", "socketcan:can0"),
+            [
+                "this version opens only `sim:`",
+                "not `socketcan:`",
+                "bench.yaml:4:52",
+            ],
+        ),
+        (
+            bench("address: 3"),
+            ["no Modbus side", "expected no `address`", "bench.yaml:4:"],
+        ),
+        (
+            bench("permit: []"),
+            ["unknown key `permit`", "did you mean `permits`?", "S010"],
+        ),
+    ] {
+        folder.write("bench.yaml", wrong);
+        refused(&folder, &["run", "--bench", "bench.yaml"], &parts);
+    }
+    refused(
+        &folder,
+        &["run", "--bench", "none.yaml"],
+        &["cannot be read", "none.yaml"],
+    );
+}
+
+#[test]
+fn link_that_is_not_opened_yet_is_a_warning_when_checked() {
+    let folder = Folder::new();
+    folder.write(
+        "lab.yaml",
+        bench("permits: []").replace("sim:", "slcan:/dev/ttyACM0"),
+    );
+    let ran = folder.run(&["check", "lab.yaml"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+    assert!(ran.out().contains("1 bench: 1 warning"), "{}", ran.out());
+    assert!(ran.error().contains("opens only `sim:`"), "{}", ran.error());
+}
+
+/// The description of the servo drive under another name, which nothing simulates.
+fn unknown_drive(folder: &Folder) {
+    assert_eq!(folder.run(&["export", "all"]).exit(), Some(0));
+    for file in ["device.yaml", "kinco-servo.eds"] {
+        let text = folder.read(&format!("all/devices/kinco-servo/{file}"));
+        let text = text.replace("device: kinco-servo", "device: my-drive");
+        folder.write(&format!("drive/{file}"), text);
+    }
+}
+
+#[test]
+fn device_is_given_by_its_folder() {
+    let folder = Folder::new();
+    unknown_drive(&folder);
+    for path in [
+        "all/devices/kinco-servo",
+        "all/devices/kinco-servo/device.yaml",
+    ] {
+        let ran = folder.run(&["run", "canopen.nmt", "--device", path]);
+        assert_eq!(ran.exit(), Some(0), "{path}\n{}", ran.error());
+        assert!(ran.out().contains("kinco-servo"), "{}", ran.out());
+        assert!(!ran.out().contains("teco"), "{}", ran.out());
+    }
+    refused(
+        &folder,
+        &["run", "--device", "./none"],
+        &["cannot be read", "none"],
+    );
+}
+
+#[test]
+fn device_without_a_reference_device_is_checked_and_not_simulated() {
+    let folder = Folder::new();
+    unknown_drive(&folder);
+    let parts = [
+        "no reference device \"my-drive\"",
+        "can be described and checked",
+    ];
+    refused(&folder, &["run", "--device", "drive"], &parts);
+    refused(&folder, &["prove", "--device", "drive"], &parts);
+    let ran = folder.run(&["check", "drive"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+    assert!(
+        ran.out().contains("5 devices: no mistakes"),
+        "{}",
+        ran.out()
+    );
+    let ran = folder.run(&["run", "--device", "drive", "--dry-run"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+    assert!(
+        ran.out().contains("canopen.nmt on my-drive"),
+        "{}",
+        ran.out()
+    );
+}
+
+#[test]
+fn deviation_from_a_check_that_is_nowhere_is_a_warning() {
+    let folder = Folder::new();
+    unknown_drive(&folder);
+    let text = folder.read("drive/device.yaml");
+    folder.write(
+        "drive/device.yaml",
+        text.replace("od.target-can-be-read", "od.target-can-be-raed"),
+    );
+    let ran = folder.run(&["check", "drive"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+    for part in [
+        "warning[S051]",
+        "`od.target-can-be-raed`",
+        "did you mean `od.target-can-be-read`?",
+    ] {
+        assert!(ran.error().contains(part), "{part}\n{}", ran.error());
+    }
+}
