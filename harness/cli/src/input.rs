@@ -12,11 +12,11 @@ const LARGEST_BYTES: u64 = 16 * 1024 * 1024;
 /// Folders below folders are followed so far, in case they go in a circle.
 const DEEPEST: usize = 32;
 
-/// Reads the file at `path`.
-pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
-    let shown = path.display().to_string();
-    let fail =
-        |message: String| Box::new(Problem::new(Severity::Error, message).in_file(shown.clone()));
+/// Reads the bytes of the file at `path`.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Box<Problem>> {
+    let fail = |message: String| {
+        Box::new(Problem::new(Severity::Error, message).in_file(path.display().to_string()))
+    };
     let unreadable = |error: std::io::Error| fail(format!("cannot be read: {error}"));
     let too_large = || {
         fail(format!(
@@ -37,6 +37,15 @@ pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
     if bytes.len() as u64 > LARGEST_BYTES {
         return Err(too_large());
     }
+    Ok(bytes)
+}
+
+/// Reads the text of the file at `path`.
+pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
+    let bytes = read_bytes(path)?;
+    let shown = path.display().to_string();
+    let fail =
+        |message: String| Box::new(Problem::new(Severity::Error, message).in_file(shown.clone()));
     if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
         return Err(fail("UTF-16 text; save it as UTF-8".to_owned()));
     }

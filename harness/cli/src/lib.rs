@@ -23,8 +23,8 @@ pub use complaint::Complaint;
 pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use options::{
-    CheckOptions, Color, Command, EffectName, Format, ListOptions, Options, ProveOptions,
-    RunOptions, SchemaKind, Selection,
+    CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format, ListOptions,
+    Options, ProveOptions, RunOptions, SchemaKind, Selection,
 };
 pub use player::{Plan, play};
 
@@ -37,6 +37,9 @@ pub fn main(options: &Options) -> Exit {
         Command::Run(options) => commands::run::run(options, &mut screen),
         Command::List(options) => commands::list::list(options, &mut screen),
         Command::Check(options) => commands::check::check(options, &mut screen),
+        Command::Eds {
+            command: EdsCommand::Check(options),
+        } => commands::eds::check(options, &mut screen),
         Command::Schema { kind } => commands::schema::schema(*kind, &mut screen),
         Command::Faults { format } => commands::devices::faults(*format, &mut screen),
         Command::Devices { format } => commands::devices::devices(*format, &mut screen),

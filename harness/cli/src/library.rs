@@ -414,7 +414,7 @@ impl Reader {
                 let findings = read
                     .findings
                     .iter()
-                    .map(|it| problems::of_finding(it, &file.path, &text));
+                    .map(|it| problems::of_used_finding(it, &file.path, &text));
                 self.problems.extend(findings);
                 Some(read.dictionary)
             }

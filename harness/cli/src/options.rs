@@ -34,6 +34,12 @@ pub enum Command {
     List(ListOptions),
     /// Read and check suites and device descriptions; play nothing
     Check(CheckOptions),
+    /// Work with EDS files
+    Eds {
+        /// What to do.
+        #[command(subcommand)]
+        command: EdsCommand,
+    },
     /// Print a JSON Schema
     Schema {
         /// Of which kind of file.
@@ -85,15 +91,15 @@ pub struct RunOptions {
     /// What is played.
     #[command(flatten)]
     pub selection: Selection,
+    /// Play on the devices of this bench, and do only what it permits.
+    #[arg(long, value_name = "FILE")]
+    pub bench: Option<PathBuf>,
     /// Show what would be played on what, and what is skipped and why.
     #[arg(long)]
     pub dry_run: bool,
     /// Documented deviations fail, and only the strict abort codes pass.
     #[arg(long)]
     pub strict: bool,
-    /// Play on the devices of this bench, and do only what it permits.
-    #[arg(long, value_name = "FILE")]
-    pub bench: Option<PathBuf>,
     /// Permit only these effects; without a bench file all are permitted, with one only those that it lists.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     pub allow: Vec<EffectName>,
@@ -150,6 +156,30 @@ pub struct CheckOptions {
     pub format: Format,
 }
 
+/// A command on EDS files.
+#[derive(Debug, Subcommand)]
+pub enum EdsCommand {
+    /// Check EDS files: what is wrong in them, and what to do
+    Check(EdsCheckOptions),
+}
+
+/// Options of `eds check`.
+#[derive(Debug, Args)]
+#[command(after_help = EDS_EXIT_CODES)]
+pub struct EdsCheckOptions {
+    /// EDS or DCF files.
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// How to print the findings.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+const EDS_EXIT_CODES: &str = "Exit codes:
+  0  no errors; there may be warnings
+  1  an error is found
+  2  a file cannot be read";
+
 /// Options of `prove`.
 #[derive(Debug, Args)]
 pub struct ProveOptions {
@@ -201,6 +231,8 @@ pub enum SchemaKind {
     Suite,
     /// A device description.
     Device,
+    /// A bench.
+    Bench,
     /// One line of a journal.
     Journal,
 }
@@ -231,8 +263,6 @@ impl ValueEnum for EffectName {
         ];
         &NAMES
     }
-    /// A bench.
-    Bench,
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(PossibleValue::new(effect_name(self.0)))

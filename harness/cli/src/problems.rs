@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fieldproof_dictionary::eds::Finding;
+use fieldproof_dictionary::eds::{self, Finding};
 use fieldproof_dictionary::registers::TableError;
 use fieldproof_report::{Also, Problem, Severity, SourceText, Span};
 use fieldproof_suite::{Diagnostic, Position};
@@ -32,15 +32,28 @@ pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &Arc<str>) -> Problem
     }
 }
 
+/// A finding in an EDS file that is checked for its own sake.
 pub(crate) fn of_finding(finding: &Finding, path: &str, text: &Arc<str>) -> Problem {
-    whole_line(
-        Severity::Warning,
-        finding.line,
-        finding.text.clone(),
-        path,
-        text,
-    )
-    .help(finding.help.clone())
+    let severity = match finding.rule.severity {
+        eds::Severity::Error => Severity::Error,
+        eds::Severity::Warning => Severity::Warning,
+        eds::Severity::Note => Severity::Note,
+    };
+    Problem {
+        code: Some(finding.rule.code.to_owned()),
+        ..whole_line(severity, finding.line, finding.text.clone(), path, text)
+            .note(format!("the rule: {}", finding.rule.title))
+            .help(finding.help.clone())
+    }
+}
+
+/// A finding in an EDS file that is read to be used, which it can be.
+pub(crate) fn of_used_finding(finding: &Finding, path: &str, text: &Arc<str>) -> Problem {
+    let problem = of_finding(finding, path, text);
+    Problem {
+        severity: problem.severity.min(Severity::Warning),
+        ..problem
+    }
 }
 
 pub(crate) fn of_table_error(error: &TableError, path: &str, text: &Arc<str>) -> Problem {
@@ -81,4 +94,3 @@ pub(crate) fn placed(problem: Problem, at: Position, label: &str, text: &Arc<str
         ..problem
     }
 }
-

@@ -64,7 +64,16 @@ impl Screen {
 
     /// Prints `problems` to standard error: the first of them, if they are many.
     pub(crate) fn complain(&mut self, problems: &[Problem]) {
-        for (index, problem) in problems.iter().take(SHOWN_PROBLEMS).enumerate() {
+        self.complain_first(problems, SHOWN_PROBLEMS);
+    }
+
+    /// Prints all of `problems` to standard error.
+    pub(crate) fn complain_all(&mut self, problems: &[Problem]) {
+        self.complain_first(problems, problems.len());
+    }
+
+    fn complain_first(&mut self, problems: &[Problem], most: usize) {
+        for (index, problem) in problems.iter().take(most).enumerate() {
             let gap = if index == 0 {
                 ""
             } else {
@@ -74,11 +83,7 @@ impl Screen {
             let text = render(problem, INK);
             let _ = write!(self.error, "{gap}{text}");
         }
-        if let Some(more) = problems
-            .len()
-            .checked_sub(SHOWN_PROBLEMS)
-            .filter(|more| *more > 0)
-        {
+        if let Some(more) = problems.len().checked_sub(most).filter(|more| *more > 0) {
             let _ = writeln!(
                 self.error,
                 "

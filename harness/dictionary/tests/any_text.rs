@@ -9,7 +9,9 @@ fn line() -> impl Strategy<Value = String> {
     let section = prop_oneof![
         "\\[[0-9A-F]{4}\\]",
         "\\[[12][0-9]{3}sub[0-9A-Fa-f]{0,3}\\]",
-        "\\[DeviceInfo\\]"
+        "\\[DeviceInfo\\]",
+        "\\[(Mandatory|Optional|Manufacturer)Objects\\]",
+        "\\[(1400|1600|1800|1A00)(sub[0-2])?\\]"
     ];
     let key = prop::sample::select(vec![
         "ParameterName",
@@ -22,6 +24,12 @@ fn line() -> impl Strategy<Value = String> {
         "PDOMapping",
         "SubNumber",
         "CompactSubObj",
+        "SupportedObjects",
+        "1",
+        "NrOfRXPDO",
+        "Granularity",
+        "CreationDate",
+        "ModificationTime",
         "VendorNumber",
         "BaudRate_50",
         "BaudRate_99999999999",
@@ -45,6 +53,18 @@ fn check(text: &str) {
     for finding in &eds.findings {
         assert!((1..=lines).contains(&finding.line), "{finding:?}");
     }
+    for finding in eds::check(&eds) {
+        assert!((1..=lines.max(1)).contains(&finding.line), "{finding:?}");
+        assert!(!finding.text.is_empty() && !finding.help.is_empty());
+    }
+    let again = eds::read(&eds::write(&eds));
+    let shape = |eds: &eds::Eds| -> Vec<(u16, u8)> {
+        eds.dictionary
+            .entries()
+            .map(|(index, sub, _)| (index, sub))
+            .collect()
+    };
+    assert_eq!(shape(&eds), shape(&again));
     for (_, _, entry) in eds.dictionary.entries() {
         assert!((1..=lines).contains(&entry.line));
         if let (Some(bytes), Some(size)) = (entry.default_bytes(127), entry.data_type.bytes()) {
@@ -59,7 +79,7 @@ fn check(text: &str) {
 proptest! {
     #[test]
     fn eds_of_any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
-        check(&String::from_utf8_lossy(&bytes));
+        check(&eds::decode(&bytes));
     }
 
     #[test]

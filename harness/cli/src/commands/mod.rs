@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod devices;
+pub(crate) mod eds;
 pub(crate) mod export;
 pub(crate) mod list;
 pub(crate) mod prove;

@@ -1,0 +1,85 @@
+//! `fieldproof eds`
+
+use std::path::Path;
+use std::sync::Arc;
+
+use fieldproof_dictionary::eds;
+use fieldproof_report::{Problem, Severity};
+
+use crate::complaint::Complaint;
+use crate::exit::Exit;
+use crate::input;
+use crate::options::{EdsCheckOptions, Format};
+use crate::problems;
+use crate::screen::Screen;
+
+/// Checks EDS files: 0 without errors, 1 with one, 2 if a file cannot be read.
+pub(crate) fn check(options: &EdsCheckOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
+    let mut found = Vec::new();
+    let mut exit = Exit::Passed;
+    for path in &options.files {
+        match input::read_bytes(path) {
+            Ok(bytes) => {
+                let problems = check_file(path, &bytes);
+                if problems
+                    .iter()
+                    .any(|problem| problem.severity == Severity::Error)
+                {
+                    exit = exit.max(Exit::Failed);
+                }
+                found.extend(problems);
+            }
+            Err(problem) => {
+                exit = Exit::WrongInput;
+                found.push(*problem);
+            }
+        }
+    }
+    match options.format {
+        Format::Json => screen.print_json(&found),
+        Format::Text => {
+            screen.complain_all(&found);
+            screen.print(&summary(options.files.len(), &found));
+        }
+    }
+    Ok(exit)
+}
+
+fn check_file(path: &Path, bytes: &[u8]) -> Vec<Problem> {
+    let text: Arc<str> = eds::decode(bytes).into();
+    let shown = path.display().to_string();
+    eds::check(&eds::read(&text))
+        .iter()
+        .map(|finding| problems::of_finding(finding, &shown, &text))
+        .collect()
+}
+
+fn summary(files: usize, problems: &[Problem]) -> String {
+    let count = |severity| {
+        problems
+            .iter()
+            .filter(|problem| problem.severity == severity)
+            .count()
+    };
+    let parts: Vec<String> = [
+        (count(Severity::Error), "error"),
+        (count(Severity::Warning), "warning"),
+        (count(Severity::Note), "note"),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .map(|(count, what)| number(count, what))
+    .collect();
+    let found = match parts.is_empty() {
+        true => "no findings".to_owned(),
+        false => parts.join(", "),
+    };
+    format!("{}: {found}\n", number(files, "file"))
+}
+
+fn number(count: usize, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}
