@@ -24,7 +24,7 @@ pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use options::{
     CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format, ListOptions,
-    Options, ProveOptions, RunOptions, SchemaKind, Selection,
+    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
 };
 pub use player::{Plan, play};
 
@@ -44,6 +44,7 @@ pub fn main(options: &Options) -> Exit {
         Command::Faults { format } => commands::devices::faults(*format, &mut screen),
         Command::Devices { format } => commands::devices::devices(*format, &mut screen),
         Command::Prove(options) => commands::prove::prove(options, &mut screen),
+        Command::NewDevice(options) => commands::new_device::new_device(options, &mut screen),
         Command::Export { directory, force } => {
             commands::export::export(directory, *force, &mut screen)
         }

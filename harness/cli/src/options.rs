@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use fieldproof_run::effect_name;
 use fieldproof_suite::model::Effect;
 
@@ -60,6 +60,8 @@ pub enum Command {
     },
     /// Play every suite against every fault and show which case catches which
     Prove(ProveOptions),
+    /// Write a device description to start from
+    NewDevice(NewDeviceOptions),
     /// Write the suites and device descriptions that the program carries into a folder
     Export {
         /// The folder.
@@ -200,6 +202,21 @@ pub struct ProveOptions {
     /// How to print the outcome.
     #[arg(long, default_value = "text")]
     pub format: Format,
+}
+
+/// Options of `new-device`.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("claims").args(["eds", "registers"]).required(true).multiple(true)))]
+pub struct NewDeviceOptions {
+    /// The folder, which gives the device its name.
+    #[arg(value_name = "DIR")]
+    pub directory: PathBuf,
+    /// The EDS of the device; features are inferred from it, and it is copied.
+    #[arg(long, value_name = "FILE")]
+    pub eds: Option<PathBuf>,
+    /// The register map of the device, which is copied.
+    #[arg(long, value_name = "FILE")]
+    pub registers: Option<PathBuf>,
 }
 
 /// How something is printed.

@@ -78,13 +78,6 @@ fn whole_line(
     }
 }
 
-fn span(at: Position) -> Span {
-    Span {
-        line: at.line,
-        column: at.column,
-        end_column: at.end_column,
-    }
-}
 /// `problem` at its place in `text`.
 pub(crate) fn placed(problem: Problem, at: Position, label: &str, text: &Arc<str>) -> Problem {
     Problem {
@@ -92,5 +85,13 @@ pub(crate) fn placed(problem: Problem, at: Position, label: &str, text: &Arc<str
         source: SourceText::Whole(Arc::clone(text)),
         label: label.to_owned(),
         ..problem
+    }
+}
+
+fn span(at: Position) -> Span {
+    Span {
+        line: at.line,
+        column: at.column,
+        end_column: at.end_column,
     }
 }

@@ -286,3 +286,31 @@ fn deviation_from_a_check_that_is_nowhere_is_a_warning() {
         assert!(ran.error().contains(part), "{part}\n{}", ran.error());
     }
 }
+
+#[test]
+fn documented_examples_are_what_they_say() {
+    let document = include_str!("../../../docs/devices-and-benches.md");
+    let blocks: Vec<&str> = document
+        .split("```yaml\n")
+        .skip(1)
+        .map(|block| block.split("```").next().unwrap())
+        .collect();
+    assert_eq!(blocks.len(), 2, "a device and a bench");
+    let folder = Folder::new();
+    unknown_drive(&folder);
+    folder.write("my-drive/device.yaml", blocks[0]);
+    folder.write(
+        "my-drive/my-drive.eds",
+        folder.read("drive/kinco-servo.eds"),
+    );
+    folder.write("my-drive/lab.yaml", blocks[1]);
+    let checked = folder.run(&["check", "my-drive"]);
+    assert!(
+        checked.out().contains("1 bench: no mistakes"),
+        "{}{}",
+        checked.out(),
+        checked.error()
+    );
+    let ran = folder.run(&["run", "--bench", "my-drive/lab.yaml"]);
+    assert_eq!(ran.exit(), Some(0), "{}{}", ran.out(), ran.error());
+}

@@ -5,6 +5,7 @@ pub(crate) mod devices;
 pub(crate) mod eds;
 pub(crate) mod export;
 pub(crate) mod list;
+pub(crate) mod new_device;
 pub(crate) mod prove;
 pub(crate) mod run;
 pub(crate) mod schema;
