@@ -46,8 +46,11 @@ impl Section {
 impl Key {
     /// Whether it is called `name`, in any case and with any blanks in it.
     pub fn is(&self, name: &str) -> bool {
+        let blanks = || self.name.bytes().any(|byte| byte.is_ascii_whitespace());
         self.name.eq_ignore_ascii_case(name)
-            || (self.name.len() > name.len() && squeezed(&self.name).eq_ignore_ascii_case(name))
+            || (self.name.len() > name.len()
+                && blanks()
+                && squeezed(&self.name).eq_ignore_ascii_case(name))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The lists of objects against the sections, both ways.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::{Eds, Finding, Section, rules};
 use crate::integer::Integer;
@@ -80,12 +80,14 @@ fn missing(eds: &Eds, name: &str, findings: &mut Vec<Finding>) {
 /// The indices of a list with their lines.
 fn indices(section: &Section, findings: &mut Vec<Finding>) -> Vec<(u16, usize)> {
     let mut indices = Vec::new();
+    let mut numbers = BTreeSet::new();
     let mut entries = 0;
     for key in &section.keys {
-        let Ok(_) = key.name.parse::<u32>() else {
+        let Ok(number) = key.name.parse::<u32>() else {
             continue;
         };
         entries += 1;
+        numbers.insert(number);
         match Integer::parse(&key.value).and_then(|number| u16::try_from(number.value).ok()) {
             Some(index) => indices.push((index, key.line)),
             None => findings.push(Finding::losing(
@@ -96,20 +98,22 @@ fn indices(section: &Section, findings: &mut Vec<Finding>) -> Vec<(u16, usize)> 
             )),
         }
     }
-    count(section, entries, findings);
+    count(section, entries, &numbers, findings);
     indices
 }
 
-fn count(section: &Section, entries: i128, findings: &mut Vec<Finding>) {
+fn count(section: &Section, entries: i128, numbers: &BTreeSet<u32>, findings: &mut Vec<Finding>) {
     let key = section.key("SupportedObjects");
     let said = key.and_then(|key| Integer::parse(&key.value));
     let line = key.map_or(section.line, |key| key.line);
     let text = match (said, key) {
         (Some(said), _) if said.value == entries => {
             // The numbers 1 to N must be there, each of them.
-            let gap = (1..=entries).find(|number| section.key(&number.to_string()).is_none());
+            let gap = (1..)
+                .zip(numbers)
+                .find(|(wanted, number)| wanted != *number);
             match gap {
-                Some(gap) => format!("[{}] has no entry {gap}", section.name),
+                Some((gap, _)) => format!("[{}] has no entry {gap}", section.name),
                 None => return,
             }
         }
