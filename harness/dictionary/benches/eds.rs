@@ -34,6 +34,18 @@ fn read_and_check(bencher: divan::Bencher<'_, '_>, objects: u16) {
 }
 
 #[divan::bench]
+fn read_10_000(bencher: divan::Bencher<'_, '_>) {
+    let text = file(10_000);
+    bencher.bench(|| eds::read(divan::black_box(&text)));
+}
+
+#[divan::bench]
+fn check_10_000(bencher: divan::Bencher<'_, '_>) {
+    let eds = eds::read(&file(10_000));
+    bencher.bench(|| eds::check(divan::black_box(&eds)).len());
+}
+
+#[divan::bench]
 fn write_10_000(bencher: divan::Bencher<'_, '_>) {
     let eds = eds::read(&file(10_000));
     bencher.bench(|| eds::write(divan::black_box(&eds)).len());

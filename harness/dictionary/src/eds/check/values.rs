@@ -21,8 +21,11 @@ fn spelling(eds: &Eds, entry: &Entry, findings: &mut Vec<Finding>) {
     if entry.data_type.is_text() {
         return;
     }
+    let Some(section) = eds.section_at(entry.line) else {
+        return;
+    };
     for name in ["DefaultValue", "LowLimit", "HighLimit"] {
-        let Some(key) = eds.key_at(entry.line, name) else {
+        let Some(key) = section.key(name) else {
             continue;
         };
         if key.value.contains("0X") {
