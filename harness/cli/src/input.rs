@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use fieldproof_dictionary::eds;
 use fieldproof_report::{Problem, Severity};
 use fieldproof_suite::SourceFile;
 
@@ -56,6 +57,13 @@ pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
             Err(fail(format!("not UTF-8 text: byte {at} is no character")))
         }
     }
+}
+
+/// Reads the EDS at `path`, which may be ISO 8859-1, as vendors have it.
+pub(crate) fn read_eds(path: &Path) -> Result<SourceFile, Box<Problem>> {
+    let text = eds::decode(&read_bytes(path)?);
+    let path = path.display().to_string();
+    Ok(SourceFile { path, text })
 }
 
 /// Every `*.yaml` and `*.yml` below `folder`, sorted by path. Links to folders are not followed.

@@ -407,7 +407,11 @@ impl Reader {
     }
 
     fn dictionary(&mut self, folder: &Folder, name: &str) -> Option<Dictionary> {
-        match folder.file(name) {
+        let file = match folder {
+            Folder::OnDisk(folder) => input::read_eds(&folder.join(name)),
+            Folder::Embedded(_) => folder.file(name),
+        };
+        match file {
             Ok(file) => {
                 let read = eds::read(&file.text);
                 let text = Arc::from(file.text);

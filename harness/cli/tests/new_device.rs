@@ -75,3 +75,20 @@ fn description_from_each_eds_is_clean_and_can_be_previewed() {
         assert!(ran.out().contains("canopen.nmt on"), "{}", ran.out());
     }
 }
+
+#[test]
+fn eds_in_latin_1_can_be_used() {
+    let folder = Folder::new();
+    folder.run(&["export", "all"]);
+    let eds = folder.read("all/devices/kinco-servo/kinco-servo.eds");
+    let mut bytes = eds.into_bytes();
+    // A degree sign as ISO 8859-1 has it, which is no UTF-8.
+    bytes.extend(b"\n; \xB0C\n");
+    folder.write("a.eds", bytes);
+    assert_eq!(
+        folder.run(&["new-device", "mine", "--eds", "a.eds"]).exit(),
+        Some(0)
+    );
+    let ran = folder.run(&["check", "mine"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+}
