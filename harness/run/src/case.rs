@@ -11,14 +11,11 @@ use fieldproof_suite::model::{Case, Located, NmtState, Step};
 use crate::excerpt::excerpt;
 use crate::steps::{check_of, is_precondition};
 use crate::stop::{Came, Mismatch, Stop};
-use crate::tester::{SERIAL, Tester};
+use crate::tester::{LATE_ANSWER, SERIAL, Tester};
 use crate::undo::Undo;
 
 /// How long after the last step an answer too many is waited for.
 const SETTLE_TIME: Duration = Duration::from_millis(5);
-
-/// How long an answer may be late that must not be taken for the answer to what puts the device back.
-const LATE_ANSWER: Duration = Duration::from_millis(200);
 
 /// How a case ended.
 pub(crate) struct CaseOutcome {

@@ -13,7 +13,7 @@ use fieldproof_record::{
 use fieldproof_suite::device::{DeviceDescription, Feature};
 use fieldproof_suite::model::{Case, NmtState};
 use fieldproof_suite::{CaseRef, Diagnostic, Environment, Position, Suite};
-use fieldproof_wire::canopen::{Multiplexer, NodeId};
+use fieldproof_wire::canopen::NodeId;
 
 use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
@@ -23,7 +23,7 @@ use crate::relocate::relocate;
 use crate::session::Session;
 use crate::steps::main_role;
 use crate::stop::Stop;
-use crate::tester::Tester;
+use crate::tester::{DEVICE_TYPE, Tester};
 use crate::undo::UndoStack;
 use crate::value::Saved;
 
@@ -185,10 +185,7 @@ impl<'a> Player<'a> {
                 return;
             }
             sends_pdos |= tester.has_sent_pdos();
-            match tester.sdo_upload(
-                Multiplexer::new(0x1000, 0),
-                tester.device.timing.sdo_response,
-            ) {
+            match tester.sdo_upload(DEVICE_TYPE, tester.device.timing.sdo_response) {
                 Ok(_) => break,
                 // Silent for longer than it may take to boot: the cases will say what is wrong with it.
                 Err(Stop::Mismatch(_) | Stop::Undecided(_)) if tester.session.now() >= patience => {

@@ -9,13 +9,11 @@ use crate::modbus::{Answer, show_bytes};
 use crate::pdo_procedure::pdo_parameters;
 use crate::sdo::{Outcome, show_abort};
 use crate::stop::{Came, Stop};
-use crate::tester::{CAN, Tester, multiplexer};
+use crate::tester::{CAN, DEVICE_TYPE, Tester, multiplexer};
 use crate::undo::Undo;
 
 /// Objects that are commands, not settings: what they read is not what was written.
 const COMMANDS: [u16; 3] = [0x1003, 0x1010, 0x1011];
-/// Every CANopen device has it, and reading it changes nothing.
-const DEVICE_TYPE: Multiplexer = Multiplexer::new(0x1000, 0);
 const CONTROLWORD: Multiplexer = Multiplexer::new(0x6040, 0);
 
 impl Tester<'_> {

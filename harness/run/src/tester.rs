@@ -21,6 +21,13 @@ use crate::value::Saved;
 pub(crate) const CAN: &str = "can";
 pub(crate) const SERIAL: &str = "serial";
 
+/// Every CANopen device has it, and reading it changes nothing.
+pub(crate) const DEVICE_TYPE: Multiplexer = Multiplexer::new(0x1000, 0);
+
+/// How long past its limit an answer is still waited for: so that "late" and "never" can be told apart, and so that a
+/// late one is not taken for the answer to what puts the device back.
+pub(crate) const LATE_ANSWER: Duration = Duration::from_millis(200);
+
 /// Everything a step needs.
 pub(crate) struct Tester<'a> {
     pub(crate) session: Session<'a>,

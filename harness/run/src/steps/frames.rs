@@ -11,11 +11,8 @@ use fieldproof_wire::describe::describe_frame;
 use crate::limits::show;
 use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
-use crate::tester::{CAN, SERIAL, Tester};
+use crate::tester::{CAN, LATE_ANSWER, SERIAL, Tester};
 use crate::value::check_decode;
-
-/// How long past its limit an answer is still waited for, so that "late" and "never" can be told apart.
-const LATE_ANSWER: Duration = Duration::from_millis(200);
 
 impl Tester<'_> {
     pub(super) fn send(&mut self, step: &Send) -> Result<(), Stop> {

@@ -10,16 +10,13 @@ use fieldproof_suite::model::{
 };
 use fieldproof_suite::scalar::Tolerance;
 use fieldproof_wire::canopen::nmt::{Command, NmtMessage, State};
-use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id, identify};
+use fieldproof_wire::canopen::{NodeId, Service, cob_id, identify};
 
 use crate::limits::{nanoseconds, show};
 use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
-use crate::tester::Tester;
+use crate::tester::{DEVICE_TYPE, Tester};
 use crate::unexpected::is_proper_heartbeat;
-
-/// Every CANopen device has it, and reading it changes nothing.
-const DEVICE_TYPE: Multiplexer = Multiplexer::new(0x1000, 0);
 
 impl Tester<'_> {
     pub(super) fn nmt(&mut self, step: &Nmt) -> Result<(), Stop> {

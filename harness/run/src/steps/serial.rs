@@ -1,7 +1,5 @@
 //! `send-bytes`, `expect-bytes`: serial frames as they stand.
 
-use std::time::Duration;
-
 use fieldproof_can::BytePattern;
 use fieldproof_suite::model::{Crc, ExpectBytes, SendBytes};
 use fieldproof_wire::modbus::crc16_bytes;
@@ -10,11 +8,8 @@ use crate::limits::show;
 use crate::modbus::show_bytes;
 use crate::session::Message;
 use crate::stop::{Came, Stop};
-use crate::tester::{SERIAL, Tester};
+use crate::tester::{LATE_ANSWER, SERIAL, Tester};
 use crate::value::check_decode;
-
-/// How long past its limit an answer is still waited for, so that "late" and "never" can be told apart.
-const LATE_ANSWER: Duration = Duration::from_millis(200);
 
 impl Tester<'_> {
     pub(super) fn send_raw_bytes(&mut self, step: &SendBytes) -> Result<(), Stop> {
