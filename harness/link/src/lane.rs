@@ -26,6 +26,12 @@ pub struct PortProperties {
     pub timestamps: &'static str,
     /// How far an instant may be off.
     pub uncertainty: Duration,
+    /// Whether [`Lane::set_line`] can give it another bit rate. On a bus without bits there is none.
+    pub sets_bit_rate: bool,
+    /// Whether [`Lane::send`] does not wait for the frame to leave, and what it gives back is when the frame was handed
+    /// over. Then it comes back as an [`Arrival`] of [`Origin::Tester`] with the instant at which it left, after all that
+    /// came before it and before all that came after it.
+    pub tells_departure: bool,
 }
 
 /// Who sent what arrived.
@@ -35,6 +41,8 @@ pub enum Origin {
     Bus,
     /// One of the tester's own participants.
     Companion(CompanionIndex),
+    /// [`Lane::send`]: on a port that [tells](PortProperties::tells_departure) when a frame has left.
+    Tester,
 }
 
 /// Something that arrived at a port.
@@ -74,6 +82,14 @@ pub enum LinkError {
         /// The port's name.
         port: String,
     },
+    /// What arrived was not fetched in time, and is lost.
+    #[error("port {port} lost {lost} frames because its receive queue was full")]
+    Overflow {
+        /// The port's name.
+        port: String,
+        /// How many, as far as the system tells; at least 1.
+        lost: u32,
+    },
     /// The link is gone.
     #[error("port {port} is down: {reason}")]
     Down {
@@ -104,7 +120,8 @@ pub trait Lane {
     fn ports(&self) -> &[PortProperties];
 
     /// Sends `what` on `port` at `at`, or at once if that has passed, and returns when it has left: on CAN after
-    /// arbitration and acknowledge. What arrives meanwhile is kept for [`Lane::receive`].
+    /// arbitration and acknowledge, or at once if the port [tells](PortProperties::tells_departure) when that was. What
+    /// arrives meanwhile is kept for [`Lane::receive`].
     ///
     /// # Errors
     /// [`LinkError`]: the link failed, or nobody acknowledged a frame.

@@ -5,21 +5,26 @@
 //! does meanwhile (a SYNC producer, an inverter behind a gateway) are [`Participant`]s: driven from outside, with no
 //! clock and no I/O of their own.
 //!
-//! [`sim`] is a lane on simulated buses, exact to the bit time and in no wall time. [`FaultyLine`] is a lane before a
+//! [`real`] is a lane on SocketCAN, SLCAN adapters, serial ports and TCP. [`sim`] is a lane on simulated buses, exact to the bit time and in no wall time. [`FaultyLine`] is a lane before a
 //! lane that spoils what comes through it.
 
+mod bus_error;
 mod lane;
 mod participant;
+pub mod real;
 mod signal;
 pub mod sim;
 mod time;
 mod wrap;
 
+pub use bus_error::BusError;
 pub use lane::{
     Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
     StimulusError,
 };
 pub use participant::{NotOffered, Outbox, Participant, Stimulus, StimulusKind};
-pub use signal::{Character, Line, Parity, Reception, SerialSettings, StopBits, Transmission};
+pub use signal::{
+    Character, Framing, Line, Parity, Reception, SerialSettings, StopBits, Transmission,
+};
 pub use time::Instant;
 pub use wrap::{FaultyLine, LineFault};

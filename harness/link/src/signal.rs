@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use fieldproof_can::Frame;
 
+use crate::BusError;
+
 /// One character on a serial line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Character {
@@ -46,6 +48,8 @@ pub enum Reception {
     Frame(Frame),
     /// One character.
     Character(Character),
+    /// The tester's own CAN controller tells of trouble on the bus.
+    BusError(BusError),
 }
 
 /// Parity of a serial line.
@@ -142,6 +146,17 @@ pub enum Line {
     },
     /// On a serial line.
     Serial(SerialSettings),
+    /// On a connection that carries bytes in order and without time of their own.
+    Stream(Framing),
+}
+
+/// How Modbus frames are told apart on a connection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Framing {
+    /// Modbus TCP: a header in front says how long.
+    ModbusTcp,
+    /// RTU frames, with address and CRC: by the CRC and by nothing more coming.
+    Rtu,
 }
 
 const fn at_least_one(rate: u32) -> u32 {

@@ -36,6 +36,8 @@ pub enum Event {
     Frame(FrameEvent),
     /// A serial frame (bytes between silences) was sent or received.
     Serial(Box<SerialEvent>),
+    /// The tester's CAN controller told of trouble on the bus.
+    BusError(Box<BusErrorEvent>),
     /// The bench did something to the device beside the bus.
     Stimulus(Box<StimulusEvent>),
     /// A time was measured and judged.
@@ -211,6 +213,21 @@ pub struct SerialEvent {
     pub bytes: Vec<u8>,
     /// Whether a character was spoilt (parity, framing).
     pub spoilt: bool,
+}
+
+/// See [`Event::BusError`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct BusErrorEvent {
+    /// When.
+    pub at_ns: u64,
+    /// The port.
+    pub port: u8,
+    /// `controller: transmit error passive; transmit errors 136, receive errors 0`
+    pub what: String,
+    /// Whether the controller has left the bus.
+    pub bus_off: bool,
+    /// Transmit and receive errors as the controller counts them, where its driver tells.
+    pub counters: Option<(u8, u8)>,
 }
 
 /// See [`Event::Stimulus`].

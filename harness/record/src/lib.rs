@@ -9,8 +9,8 @@ mod journal;
 mod verdict;
 
 pub use event::{
-    CaseFinished, CaseStarted, Cite, Direction, Event, ExcerptLine, Failure, FrameEvent,
-    LaneFinished, LaneStarted, Limits, Measurement, Note, Observation, Place, PortInfo,
+    BusErrorEvent, CaseFinished, CaseStarted, Cite, Direction, Event, ExcerptLine, Failure,
+    FrameEvent, LaneFinished, LaneStarted, Limits, Measurement, Note, Observation, Place, PortInfo,
     SerialEvent, Sink, StepStarted, StimulusEvent, SuiteFinished, SuiteStarted,
 };
 pub use journal::{Journal, JournalError, read_journal, write_event};

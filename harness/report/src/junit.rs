@@ -104,6 +104,9 @@ impl<W: Write> JunitLane<W> {
                 format!("observation.{}", observation.name),
                 observation.value.clone(),
             ),
+            Event::BusError(error) => {
+                self.property("bus error".to_owned(), error.what.clone());
+            }
             Event::Note(note) => self.property("note".to_owned(), note.text.clone()),
             Event::CaseFinished(finished) => {
                 let case = self

@@ -97,7 +97,8 @@ impl Tester<'_> {
         if !findings.link_is_down {
             let put_back = self
                 .let_late_answers_pass(&findings)
-                .and_then(|()| self.put_back(case, as_found));
+                .and_then(|()| self.put_back(case, as_found))
+                .and_then(|()| self.session.settle());
             if let Err(stop) = put_back {
                 self.find_not_put_back(&mut findings, stop, place(case.at));
             }
@@ -187,7 +188,9 @@ impl Tester<'_> {
             line: step.at.line,
             at_ns,
         }));
-        if let Err(stop) = self.step(&step.value) {
+        // What a step sent has left before the next one begins, so that the record says whose it is.
+        let played = self.step(&step.value).and_then(|()| self.session.settle());
+        if let Err(stop) = played {
             let part = if is_precondition(&step.value) {
                 Part::Control
             } else {

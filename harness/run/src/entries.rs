@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use fieldproof_link::{Lane, Line, Parity, StopBits};
+use fieldproof_link::{Framing, Lane, Line, Parity, StopBits};
 use fieldproof_record::{
     CaseFinished, CaseStarted, Cite, FORMAT, Failure, LaneStarted, Place, PortInfo, Verdict,
 };
@@ -113,6 +113,8 @@ pub(crate) fn lane_started(job: &LaneJob<'_>, lane: &dyn Lane) -> LaneStarted {
 fn show_line(line: Line) -> String {
     match line {
         Line::Off => "off".into(),
+        Line::Stream(Framing::ModbusTcp) => "Modbus TCP".into(),
+        Line::Stream(Framing::Rtu) => "RTU over TCP".into(),
         Line::Can { bit_rate } if bit_rate % 1_000_000 == 0 => {
             format!("{} Mbit/s", bit_rate / 1_000_000)
         }

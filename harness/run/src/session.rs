@@ -9,13 +9,16 @@ use fieldproof_link::{
     Arrival, Character, Instant, Lane, Line, Origin, PortIndex, Reception, Sent, SerialSettings,
     Transmission,
 };
-use fieldproof_record::{Direction, Event, FrameEvent, SerialEvent, Sink};
+use fieldproof_record::{BusErrorEvent, Direction, Event, FrameEvent, SerialEvent, Sink};
 
 use crate::serial::Assembler;
 use crate::stop::Stop;
 
 /// How many of the last frames are kept for the excerpt of a failure.
 const TRACE_LENGTH: usize = 48;
+
+/// The longest wait without a look at whether the run is to stop.
+const SLICE: Duration = Duration::from_millis(100);
 
 /// Something that came, whole.
 #[derive(Debug, Clone)]
@@ -43,6 +46,13 @@ pub(crate) enum Traffic {
     Serial(Box<SerialEvent>),
 }
 
+/// A frame that was handed over and has not been told to have left.
+#[derive(Debug, Clone, Copy)]
+struct Leaving {
+    port: PortIndex,
+    frame: Frame,
+}
+
 /// The tester's view of a lane.
 pub(crate) struct Session<'a> {
     lane: &'a mut dyn Lane,
@@ -56,6 +66,10 @@ pub(crate) struct Session<'a> {
     trace: VecDeque<Traffic>,
     /// The last transmission, or the last stimulus; what an expectation looks back to.
     last_sent: Sent,
+    /// Frames of the tester's that have not been told to have left, oldest first.
+    leaving: VecDeque<Leaving>,
+    /// Whether [`Session::last_sent`] is when the last of them was handed over.
+    last_is_leaving: bool,
     /// The last activity on each port, for the silence before a serial frame.
     last_activity: Vec<Instant>,
 }
@@ -72,7 +86,7 @@ impl<'a> Session<'a> {
             .iter()
             .map(|port| match port.line {
                 Line::Serial(settings) => Some(Assembler::new(settings)),
-                Line::Can { .. } | Line::Off => None,
+                Line::Can { .. } | Line::Off | Line::Stream(_) => None,
             })
             .collect();
         let last_activity = vec![now; assemblers.len()];
@@ -88,6 +102,8 @@ impl<'a> Session<'a> {
                 start: now,
                 end: now,
             },
+            leaving: VecDeque::new(),
+            last_is_leaving: false,
             last_activity,
         }
     }
@@ -159,10 +175,15 @@ impl<'a> Session<'a> {
     /// From now on expectations look back to this instant and no further.
     pub(crate) fn mark_sent(&mut self) {
         let now = self.lane.now();
-        self.last_sent = Sent {
+        self.note_sent(Sent {
             start: now,
             end: now,
-        };
+        });
+    }
+
+    fn note_sent(&mut self, sent: Sent) {
+        self.last_sent = sent;
+        self.last_is_leaving = false;
     }
 
     /// Sends a frame at once.
@@ -178,10 +199,49 @@ impl<'a> Session<'a> {
         frame: Frame,
     ) -> Result<Sent, Stop> {
         let sent = self.lane.send(port, at, Transmission::Frame(frame))?;
-        self.take_earlier(sent.end)?;
-        self.last_sent = sent;
-        self.record_frame(sent.end, port, Direction::Sent, frame);
+        if self.tells_departure(port) {
+            self.note_sent(sent);
+            self.leaving.push_back(Leaving { port, frame });
+            self.last_is_leaving = true;
+        } else {
+            self.take_earlier(sent.end)?;
+            self.note_sent(sent);
+            self.record_frame(sent.end, port, Direction::Sent, frame);
+        }
         Ok(sent)
+    }
+
+    fn tells_departure(&self, port: PortIndex) -> bool {
+        let port = self.lane.ports().get(port.0);
+        port.is_some_and(|port| port.tells_departure)
+    }
+
+    /// Waits until everything that was sent has left, so that it stands in the record.
+    pub(crate) fn settle(&mut self) -> Result<(), Stop> {
+        while !self.leaving.is_empty() {
+            let until = self.lane.now() + SLICE;
+            if let Some(arrival) = self.lane.receive(until)?
+                && let Some(received) = self.arrived(arrival)
+            {
+                self.inbox.push_back(received);
+            }
+        }
+        Ok(())
+    }
+
+    /// The oldest frame that was handed over left at `at`. If that is what expectations look back to, they may all be
+    /// met as much later as is given back.
+    fn departed(&mut self, at: Instant) -> Duration {
+        let Some(Leaving { port, frame }) = self.leaving.pop_front() else {
+            return Duration::ZERO;
+        };
+        self.record_frame(at, port, Direction::Sent, frame);
+        if !self.last_is_leaving || !self.leaving.is_empty() {
+            return Duration::ZERO;
+        }
+        let handed_over = self.last_sent.end;
+        self.note_sent(Sent { start: at, end: at });
+        at.since(handed_over)
     }
 
     /// Sends bytes without a gap, after the silence that ends whatever was on the line before.
@@ -200,7 +260,7 @@ impl<'a> Session<'a> {
             .lane
             .send(port, at, Transmission::Characters(characters))?;
         self.take_earlier(sent.end)?;
-        self.last_sent = sent;
+        self.note_sent(sent);
         self.note_activity(port, sent.end);
         self.record_serial(SerialEvent {
             at_ns: sent.end.as_nanos(),
@@ -222,21 +282,27 @@ impl<'a> Session<'a> {
     /// stays for later expectations.
     pub(crate) fn first(
         &mut self,
-        deadline: Instant,
+        mut deadline: Instant,
         mut wanted: impl FnMut(&Received) -> bool,
     ) -> Result<Option<Received>, Stop> {
         let since = self.last_sent.end;
-        let mut fits = |received: &Received| received.at > since && wanted(received);
-        if let Some(index) = self.inbox.iter().position(&mut fits) {
+        let is_there = |received: &Received| received.at > since && wanted(received);
+        if let Some(index) = self.inbox.iter().position(is_there) {
             return Ok(self.inbox.remove(index));
         }
-        while let Some(received) = self.next(deadline)? {
-            if fits(&received) {
+        while let Some(received) = self.next(&mut deadline)? {
+            // What comes before the last transmission has left is no answer to it.
+            let is_later = !self.is_leaving() && received.at > self.last_sent.end;
+            if is_later && wanted(&received) {
                 return Ok(Some(received));
             }
             self.inbox.push_back(received);
         }
         Ok(None)
+    }
+
+    fn is_leaving(&self) -> bool {
+        self.last_is_leaving && !self.leaving.is_empty()
     }
 
     /// Whether something like this has come since the last send and was not expected yet; it stays where it is.
@@ -247,8 +313,8 @@ impl<'a> Session<'a> {
     }
 
     /// Lets time pass until `instant`; what comes is kept.
-    pub(crate) fn collect_until(&mut self, instant: Instant) -> Result<(), Stop> {
-        while let Some(received) = self.next(instant)? {
+    pub(crate) fn collect_until(&mut self, mut instant: Instant) -> Result<(), Stop> {
+        while let Some(received) = self.next(&mut instant)? {
             self.inbox.push_back(received);
         }
         Ok(())
@@ -266,7 +332,7 @@ impl<'a> Session<'a> {
 
     /// The next whole thing that comes on any port, not later than `deadline`. A serial frame that has begun by then
     /// is waited for.
-    fn next(&mut self, deadline: Instant) -> Result<Option<Received>, Stop> {
+    fn next(&mut self, deadline: &mut Instant) -> Result<Option<Received>, Stop> {
         let mut is_over = false;
         loop {
             if !self.uninterruptible && self.stop.load(Ordering::Relaxed) {
@@ -274,20 +340,25 @@ impl<'a> Session<'a> {
             }
             let until = match self.earliest_frame_end() {
                 None if is_over => return Ok(None),
-                None => deadline,
+                None => *deadline,
                 Some(frame_ends) if is_over => frame_ends,
-                Some(frame_ends) => frame_ends.min(deadline),
+                Some(frame_ends) => frame_ends.min(*deadline),
             };
+            let until = until.min(self.lane.now() + SLICE);
             let received = match self.lane.receive(until)? {
+                Some(arrival) if arrival.origin == Origin::Tester => {
+                    *deadline = *deadline + self.departed(arrival.at);
+                    None
+                }
                 Some(arrival) => self.arrived(arrival),
                 None => {
-                    is_over |= until >= deadline;
+                    is_over |= until >= *deadline;
                     self.finish_frames(until)
                 }
             };
             match received {
                 // It began only after the deadline, while a frame that had begun before was waited for.
-                Some(late) if late.start > deadline => self.inbox.push_back(late),
+                Some(late) if late.start > *deadline => self.inbox.push_back(late),
                 Some(received) => return Ok(Some(received)),
                 None => {}
             }
@@ -296,7 +367,21 @@ impl<'a> Session<'a> {
 
     /// Records an arrival; gives it back if it is a whole thing or completes one.
     fn arrived(&mut self, arrival: Arrival) -> Option<Received> {
+        if arrival.origin == Origin::Tester {
+            self.departed(arrival.at);
+            return None;
+        }
         match arrival.what {
+            Reception::BusError(error) => {
+                self.sink.emit(Event::BusError(Box::new(BusErrorEvent {
+                    at_ns: arrival.at.as_nanos(),
+                    port: arrival.port.0 as u8,
+                    what: error.to_string(),
+                    bus_off: error.is_bus_off(),
+                    counters: error.counters(),
+                })));
+                None
+            }
             Reception::Frame(frame) => {
                 let direction = direction_of(arrival.origin);
                 self.record_frame(arrival.at, arrival.port, direction, frame);
@@ -401,5 +486,6 @@ const fn direction_of(origin: Origin) -> Direction {
     match origin {
         Origin::Bus => Direction::Received,
         Origin::Companion(_) => Direction::Companion,
+        Origin::Tester => Direction::Sent,
     }
 }

@@ -42,6 +42,8 @@ impl Builder {
             line,
             timestamps: "simulated",
             uncertainty: Duration::ZERO,
+            sets_bit_rate: true,
+            tells_departure: false,
         });
         PortIndex(self.world.add_bus(medium, line))
     }

@@ -58,7 +58,7 @@ impl CanBus {
     pub(super) fn set_line(&mut self, node: usize, line: Line, now: Instant) {
         let bit_rate = match line {
             Line::Can { bit_rate } => bit_rate,
-            Line::Off | Line::Serial(_) => 0,
+            Line::Off | Line::Serial(_) | Line::Stream(_) => 0,
         };
         let node = &mut self.nodes[node];
         if node.bit_rate == bit_rate {

@@ -55,6 +55,7 @@ impl Medium {
             Line::Off => true,
             Line::Can { .. } => matches!(self, Medium::Can(_)),
             Line::Serial(_) => matches!(self, Medium::Serial(_)),
+            Line::Stream(_) => false,
         }
     }
 

@@ -58,7 +58,7 @@ impl SerialLine {
     pub(super) fn set_line(&mut self, node: usize, line: Line, now: Instant) {
         let settings = match line {
             Line::Serial(settings) => Some(settings),
-            Line::Off | Line::Can { .. } => None,
+            Line::Off | Line::Can { .. } | Line::Stream(_) => None,
         };
         let node = &mut self.nodes[node];
         if node.settings == settings {

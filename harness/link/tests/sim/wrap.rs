@@ -49,7 +49,7 @@ fn arrivals(lane: &mut impl Lane, until: Instant) -> Vec<(Instant, Reception)> {
 fn characters(lane: &mut impl Lane) -> Vec<(u8, bool)> {
     let byte = |(_, what)| match what {
         Reception::Character(Character { byte, spoilt }) => (byte, spoilt),
-        Reception::Frame(frame) => panic!("{frame} on a serial line"),
+        other => panic!("{other:?} on a serial line"),
     };
     arrivals(lane, ms(10)).into_iter().map(byte).collect()
 }

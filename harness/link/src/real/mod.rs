@@ -1,0 +1,17 @@
+//! Real links: a [`RealLane`] joins open [`Port`]s, and [`serve`](mod@serve) lets a device take part in them.
+
+mod clock;
+mod hardware_clock;
+mod lane;
+mod open_error;
+mod port;
+mod ports;
+mod raw_frame;
+pub mod serve;
+mod socketcan;
+
+pub use clock::Clock;
+pub use lane::{NoStimuli, RealLane, Stimuli};
+pub use open_error::OpenError;
+pub use port::{Departure, News, Port, SHORT_WAIT, SendError};
+pub use socketcan::SocketCan;

@@ -1,0 +1,103 @@
+//! A device on real links, in the thread of its caller.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use super::port::Port;
+use super::ports::{GivesUp, Ports};
+use crate::{Instant, Line, LinkError, Outbox, Participant, Stimulus};
+
+/// How often the driver looks whether it is to stop, and whether there is a stimulus for the device.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Who sends through the ports: there is only the device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct TheDevice;
+
+/// Lets `device` take part in `ports`, its port numbers in their order, until `stop` is set. Between frames
+/// `next_stimulus` is asked whether something is to be done to it; what it does not offer it ignores.
+///
+/// # Errors
+/// [`LinkError`]: a link failed.
+pub fn serve(
+    device: Box<dyn Participant>,
+    ports: Vec<Box<dyn Port>>,
+    mut next_stimulus: impl FnMut() -> Option<Stimulus>,
+    stop: &AtomicBool,
+) -> Result<(), LinkError> {
+    let mut server = Server {
+        device,
+        ports: Ports::new(ports, GivesUp::Silently),
+        outbox: Outbox::default(),
+        now: Instant::START,
+    };
+    while !stop.load(Ordering::Relaxed) {
+        server.wake();
+        server.listen();
+        if let Some(stimulus) = next_stimulus() {
+            let now = server.now();
+            let _ = server.device.stimulate(now, &stimulus, &mut server.outbox);
+        }
+        server.send()?;
+        server.follow_lines();
+        let until = server.ports.clock.now() + LOOK;
+        let wake_at = server.device.wake_at();
+        server
+            .ports
+            .wait(wake_at.map_or(until, |at| at.min(until)))?;
+    }
+    Ok(())
+}
+
+struct Server {
+    device: Box<dyn Participant>,
+    ports: Ports<TheDevice>,
+    outbox: Outbox,
+    /// The last instant the device was told: for it, time never goes back.
+    now: Instant,
+}
+
+impl Server {
+    fn now(&mut self) -> Instant {
+        self.now = self.now.max(self.ports.clock.now());
+        self.now
+    }
+
+    fn wake(&mut self) {
+        let now = self.now();
+        if self.device.wake_at().is_some_and(|at| at <= now) {
+            self.device.wake(now, &mut self.outbox);
+        }
+    }
+
+    fn listen(&mut self) {
+        while let Some(heard) = self.ports.next_heard(Instant::NEVER) {
+            if heard.from.is_none() && self.device.line(heard.port) != Line::Off {
+                self.now = self.now.max(heard.at);
+                self.device
+                    .receive(self.now, heard.port, heard.what, &mut self.outbox);
+            }
+        }
+    }
+
+    fn send(&mut self) -> Result<(), LinkError> {
+        for (port, what) in self.outbox.drain() {
+            if self.device.line(port) != Line::Off {
+                self.ports.send(port, TheDevice, what)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the ports as the device sets itself, where a port can be set: its baud rate may be a register.
+    fn follow_lines(&mut self) {
+        for port in 0..self.ports.properties().len() {
+            let line = self.device.line(port);
+            let properties = &self.ports.properties()[port];
+            if line != Line::Off && line != properties.line && properties.sets_bit_rate {
+                // What cannot be set stays; then the device is not understood, as on a real line.
+                let _ = self.ports.set_line(port, line);
+            }
+        }
+    }
+}
