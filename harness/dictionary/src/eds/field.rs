@@ -68,17 +68,7 @@ pub(super) fn default(
     findings: &mut Vec<Finding>,
 ) -> Option<Default> {
     let key = key(section, name)?;
-    let default = if data_type.is_text() {
-        Some(Default::Text(key.value.clone()))
-    } else if data_type.is_real() {
-        real(&key.value, data_type)
-    } else {
-        number(&key.value, data_type)
-            .map(Default::Number)
-            .or_else(|| {
-                matches!(data_type, DataType::Unknown(_)).then(|| Default::Text(key.value.clone()))
-            })
-    };
+    let default = value(&key.value, data_type);
     match &default {
         None => findings.push(refused(key, "a value of its data type")),
         Some(value) if data_type.bits().is_some() && value.bytes(data_type, 1).is_none() => {
@@ -92,6 +82,19 @@ pub(super) fn default(
         Some(_) => {}
     }
     default
+}
+
+/// `text` as a default of an entry of type `data_type`.
+pub(super) fn value(text: &str, data_type: DataType) -> Option<Default> {
+    if data_type.is_text() {
+        return Some(Default::Text(text.to_owned()));
+    }
+    if data_type.is_real() {
+        return real(text, data_type);
+    }
+    number(text, data_type).map(Default::Number).or_else(|| {
+        matches!(data_type, DataType::Unknown(_)).then(|| Default::Text(text.to_owned()))
+    })
 }
 
 /// A real number: a bit pattern in hexadecimal, or a decimal fraction.

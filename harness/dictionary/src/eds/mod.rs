@@ -8,6 +8,7 @@ mod check;
 mod device_info;
 mod field;
 mod finding;
+pub mod manual;
 mod model;
 mod objects;
 mod place;

@@ -94,4 +94,12 @@ rules! {
 
     RESTRICTED_COB_ID "E080" Error "a COB-ID is not a restricted CAN-ID";
     SAME_FOR_EVERY_NODE "E081" Warning "a COB-ID of one node has $NODEID";
+
+    NOT_IN_EDS "E090" Warning "an object of the manual is in the EDS";
+    NOT_IN_MANUAL "E091" Note "an object of the EDS is in the manual";
+    MANUAL_TYPE "E092" Warning "a data type is that of the manual";
+    MANUAL_ACCESS "E093" Warning "an access type is that of the manual";
+    MANUAL_DEFAULT "E094" Warning "a default is that of the manual";
+    DEFAULT_IN_MANUAL_ALONE "E095" Note "a default of the manual is in the EDS";
+    NOT_SUPPORTED "E096" Warning "the manual says that the device has what the EDS describes";
 }
