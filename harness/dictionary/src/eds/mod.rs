@@ -5,11 +5,14 @@
 //! becomes a [`Finding`]; [`check`] finds what else breaks a rule.
 
 mod check;
+mod commissioning;
+mod compact;
 mod device_info;
 mod field;
 mod finding;
 pub mod manual;
 mod model;
+mod object_keys;
 mod objects;
 mod place;
 mod read;
@@ -17,6 +20,7 @@ mod rules;
 mod write;
 
 pub use check::check;
+pub use commissioning::Commissioning;
 pub use device_info::DeviceInfo;
 pub use finding::{Finding, Severity};
 pub use model::Eds;

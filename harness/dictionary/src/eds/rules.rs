@@ -35,6 +35,7 @@ rules! {
     ORPHAN "E006" Error "a sub-index belongs to an object with a section";
     FLAG "E007" Warning "a flag is 0 or 1";
     KEY_WITH_BLANKS "E008" Warning "the name of a key has no blanks";
+    COMPACT_LIST "E009" Warning "a list of names or values is about compact sub-indices";
 
     MISSING_SECTION "E010" Error "the file has its mandatory sections";
     UNKNOWN_SECTION "E011" Note "a section is one of CiA 306";

@@ -61,7 +61,7 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
         identity(eds, section, findings);
         dynamic_channels(eds, section, findings);
     }
-    for section in &eds.sections {
+    for section in eds.sections() {
         names(section, findings);
     }
 }
@@ -88,18 +88,18 @@ fn mandatory(eds: &Eds, name: &str, keys: &[&str], findings: &mut Vec<Finding>) 
     }
 }
 
-fn dates_and_times(section: &Section, findings: &mut Vec<Finding>) {
-    for key in section.keys.iter().filter(|key| !key.value.is_empty()) {
+fn dates_and_times(section: Section<'_>, findings: &mut Vec<Finding>) {
+    for key in section.keys().filter(|key| !key.value.is_empty()) {
         let (rule, right, wanted) = if key.is("CreationDate") || key.is("ModificationDate") {
             (
                 &rules::DATE,
-                is_date(&key.value),
+                is_date(key.value),
                 "mm-dd-yyyy, as in 10-23-2012",
             )
         } else if key.is("CreationTime") || key.is("ModificationTime") {
             (
                 &rules::TIME,
-                is_time(&key.value),
+                is_time(key.value),
                 "hh:mm and AM or PM without a blank, as in 11:04AM",
             )
         } else {
@@ -154,9 +154,9 @@ fn digits(text: &str) -> Option<u32> {
     all.then(|| text.parse().ok())?
 }
 
-fn bit_rates(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
+fn bit_rates(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
     const PREFIX: &str = "BaudRate_";
-    for key in &section.keys {
+    for key in section.keys() {
         let Some(prefix) = key.name.get(..PREFIX.len()) else {
             continue;
         };
@@ -183,7 +183,7 @@ fn bit_rates(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn identity(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
+fn identity(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
     let info = &eds.device_info;
     for (sub, name, said) in [
         (1, "VendorNumber", info.vendor_number),
@@ -206,12 +206,12 @@ fn identity(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn dynamic_channels(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
+fn dynamic_channels(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
     let claimed = eds.device_info.dynamic_channels_supported.unwrap_or(0);
     let described = eds
         .section("DynamicChannels")
         .and_then(|section| section.key("NrOfSeg"))
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .map_or(0, |count| count.value);
     let key = section.key("DynamicChannelsSupported");
     let line = key.map_or(section.line, |key| key.line);
@@ -234,7 +234,7 @@ fn dynamic_channels(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn names(section: &Section, findings: &mut Vec<Finding>) {
+fn names(section: Section<'_>, findings: &mut Vec<Finding>) {
     if section.is("DeviceCommissioning") {
         findings.push(Finding::new(
             &rules::SPELLING,
@@ -242,7 +242,7 @@ fn names(section: &Section, findings: &mut Vec<Finding>) {
             "[DeviceCommissioning] has one m in CiA 306",
             "write [DeviceComissioning]",
         ));
-    } else if !is_known(&section.name) {
+    } else if !is_known(section.name) {
         findings.push(Finding::new(
             &rules::UNKNOWN_SECTION,
             section.line,
@@ -250,7 +250,7 @@ fn names(section: &Section, findings: &mut Vec<Finding>) {
             "it is kept and not looked into",
         ));
     }
-    for key in &section.keys {
+    for key in section.keys() {
         blanks(section, key, findings);
     }
 }
@@ -269,8 +269,8 @@ fn is_known(name: &str) -> bool {
         || numbered("m")
 }
 
-fn blanks(section: &Section, key: &Key, findings: &mut Vec<Finding>) {
-    if key.name.contains(char::is_whitespace) {
+fn blanks(section: Section<'_>, key: Key<'_>, findings: &mut Vec<Finding>) {
+    if key.has_blanks() {
         findings.push(Finding::new(
             &rules::KEY_WITH_BLANKS,
             key.line,

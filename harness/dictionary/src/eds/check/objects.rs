@@ -1,17 +1,20 @@
 //! The sections of objects: names, types, sub-indices.
 
+use super::super::object_keys::{ObjectKeys, Word};
 use super::super::place::{Place, place};
 use super::super::{Eds, Finding, Section, rules};
-use super::{at, has_sections, section_of, standard};
+use super::{at, has_sections, section_of, standard, values};
 use crate::integer::Integer;
 use crate::{DataType, Entry, Object, ObjectKind};
 
 pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
-    for section in &eds.sections {
-        match place(&section.name) {
-            Some(Place::Object(_) | Place::Entry(..)) => {
-                name(section, findings);
-                object_type(section, findings);
+    for section in eds.sections() {
+        match place(section.name) {
+            Some(place @ (Place::Object(_) | Place::Entry(..))) => {
+                let keys = ObjectKeys::of(section);
+                name(section, &keys, findings);
+                object_type(section, place, &keys, findings);
+                values::spelling(eds, section, place, &keys, findings);
             }
             Some(Place::Links(_)) => links(eds, section, findings),
             _ => {}
@@ -23,18 +26,15 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
             true => structure(eds, object, findings),
             false => single(object, findings),
         }
-        for (sub, entry) in &object.entries {
+        for (sub, entry) in object.entries.iter() {
             data_type(eds, object, *sub, entry, profile, findings);
         }
         reserved(object, findings);
     }
 }
 
-fn name(section: &Section, findings: &mut Vec<Finding>) {
-    let Some(key) = section
-        .key("ParameterName")
-        .filter(|key| !key.value.is_empty())
-    else {
+fn name(section: Section<'_>, keys: &ObjectKeys<'_>, findings: &mut Vec<Finding>) {
+    let Some(key) = keys.get(Word::ParameterName) else {
         findings.push(Finding::new(
             &rules::NAME_MISSING,
             section.line,
@@ -61,19 +61,21 @@ fn name(section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn object_type(section: &Section, findings: &mut Vec<Finding>) {
+fn object_type(
+    section: Section<'_>,
+    place: Place,
+    keys: &ObjectKeys<'_>,
+    findings: &mut Vec<Finding>,
+) {
     // CiA 306 lets an entry without ObjectType be a variable.
-    let Some(key) = section
-        .key("ObjectType")
-        .filter(|key| !key.value.is_empty())
-    else {
+    let Some(key) = keys.get(Word::ObjectType) else {
         return;
     };
-    let Some(code) = Integer::parse(&key.value) else {
+    let Some(code) = Integer::parse(key.value) else {
         return;
     };
     let legal = matches!(code.value, 0 | 2 | 5..=9);
-    let entry = matches!(place(&section.name), Some(Place::Entry(..)));
+    let entry = matches!(place, Place::Entry(..));
     if !legal || (entry && !matches!(code.value, 0 | 2 | 5 | 7)) {
         findings.push(Finding::new(
             &rules::OBJECT_TYPE,
@@ -90,9 +92,9 @@ fn object_type(section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn links(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
-    for key in &section.keys {
-        let index = Integer::parse(&key.value).and_then(|number| u16::try_from(number.value).ok());
+fn links(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
+    for key in section.keys() {
+        let index = Integer::parse(key.value).and_then(|number| u16::try_from(number.value).ok());
         if key.name.parse::<u32>().is_ok()
             && index.is_none_or(|index| eds.dictionary.object(index).is_none())
         {
@@ -123,7 +125,7 @@ fn single(object: &Object, findings: &mut Vec<Finding>) {
 fn structure(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
     let compact = eds
         .key_at(object.line, "CompactSubObj")
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .is_some_and(|count| count.value > 0);
     sub_number(eds, object, compact, findings);
     let Some(count) = object.entries.get(&0) else {
@@ -149,7 +151,7 @@ fn structure(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
 fn sub_number(eds: &Eds, object: &Object, compact: bool, findings: &mut Vec<Finding>) {
     let key = eds.key_at(object.line, "SubNumber");
     let said = key
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .map(|number| number.value);
     let present = object.entries.len();
     if compact {

@@ -161,7 +161,7 @@ fn of_entry(eds: &Eds, entry: &Entry, row: &Row, differences: &mut Vec<Differenc
                 "{} is {} by default in the EDS, {printed} in the manual",
                 named(row),
                 eds.key_at(entry.line, "DefaultValue")
-                    .map_or("counted", |key| key.value.as_str())
+                    .map_or("counted", |key| key.value)
             ),
             "read it after a reset to defaults",
         ),
