@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import tty
 
 from pymodbus.pdu import ModbusPDU
 from pymodbus.server import ModbusSerialServer, ModbusTcpServer
@@ -67,12 +66,3 @@ class TcpServer(ModbusTcpServer):
 def is_pseudo_terminal(port: str) -> bool:
     """Whether `port` leads to a pseudo-terminal."""
     return os.path.realpath(port).startswith("/dev/pts/")
-
-
-def open_pseudo_terminal() -> tuple[int, str]:
-    """A new pseudo-terminal without line editing: the master's file descriptor and the name of the other end."""
-    master, slave = os.openpty()
-    tty.setraw(slave)
-    name = os.ttyname(slave)
-    os.close(slave)
-    return master, name

@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from modbus_slave.server import open_pseudo_terminal  # noqa: E402
+from tests.terminal import open_pseudo_terminal  # noqa: E402
 
 PROGRAM = Path(__file__).resolve().parents[1] / "modbus_device.py"
 
@@ -45,8 +45,7 @@ class Rtu(unittest.TestCase):
     device = "liaomiao-encoder"
 
     def setUp(self) -> None:
-        self.line, name = open_pseudo_terminal()
-        self.addCleanup(os.close, self.line)
+        self.line, name = open_pseudo_terminal(self)
         _, ready = start(self, self.device, "--port", name)
         self.assertEqual(ready, "ready")
 
@@ -141,10 +140,12 @@ class Unplugged(unittest.TestCase):
     """A port that goes."""
 
     def test_ends_with_1(self) -> None:
-        line, name = open_pseudo_terminal()
+        line, other = os.openpty()
+        name = os.ttyname(other)
         command = [sys.executable, PROGRAM, "huacheng-ssts1", "--port", name]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             self.assertEqual(process.stdout.readline(), "ready\n")
+            os.close(other)
             os.close(line)
             self.assertEqual(process.wait(5), 1)
             self.assertIn("the port is gone", process.stderr.read())
