@@ -72,6 +72,7 @@ const CONTRADICTIONS: &[(&str, &str, usize, &str)] = &[
     ("TC-58", "E066", 3, "6040:00 is sent here and received"),
     ("TC-59", "E067", 4, "[1600] has 4 entries and maps 2"),
     ("TC-63", "E032", 3, "Operation  Signal"),
+    ("TC-63", "E086", 3, "`Intput` in the name `AI 1 Intput`"),
 ];
 
 #[test]
@@ -99,6 +100,35 @@ fn every_contradiction_of_the_teco_file_is_found_and_nothing_else() {
         .cloned()
         .collect();
     assert_eq!(shown(&more), [""; 0]);
+}
+
+#[test]
+fn a_file_is_called_as_it_says() {
+    for (text, name) in [
+        (TECO, "TECO_510_CAN.eds"),
+        (TECO, "teco_510_can.EDS"),
+        (
+            fixture!("liaomiao-encoder/liaomiao-encoder.eds"),
+            "liaomiao-encoder.eds",
+        ),
+        (fixture!("kinco-servo/kinco-servo.eds"), "kinco-servo.eds"),
+        (
+            fixture!("huacheng-ssts1/huacheng-ssts1.eds"),
+            "huacheng-ssts1.eds",
+        ),
+        ("[FileInfo]\nFileName=\n", "any.eds"),
+        ("[DeviceInfo]\n", "any.eds"),
+    ] {
+        assert_eq!(eds::check_file_name(&eds::read(text), name), None);
+    }
+    // TC-64: the name that the manual prints above the file.
+    let found = eds::check_file_name(&eds::read(TECO), "00000373000101920000010000010000");
+    assert_eq!(
+        shown(&[found.unwrap()]),
+        [
+            "E085 line 5: FileName is TECO_510_CAN.eds, but the file is called 00000373000101920000010000010000"
+        ]
+    );
 }
 
 const TECO_MANUAL: &str = fixture!("teco-jn5-cm-can/manual.objects");

@@ -74,8 +74,10 @@ fn check_file(path: &Path, bytes: &[u8], against: Option<&Against>) -> Vec<Probl
     let text: Arc<str> = eds::decode(bytes).into();
     let shown = path.display().to_string();
     let eds = eds::read(&text);
+    let name = path.file_name().and_then(|name| name.to_str());
     let mut found: Vec<Problem> = eds::check(&eds)
         .iter()
+        .chain(&name.and_then(|name| eds::check_file_name(&eds, name)))
         .map(|finding| problems::of_finding(finding, &shown, &text))
         .collect();
     if let Some(against) = against {
@@ -87,8 +89,8 @@ fn check_file(path: &Path, bytes: &[u8], against: Option<&Against>) -> Vec<Probl
                     problems::of_difference(difference, (&shown, &text), table)
                 }),
         );
-        found.sort_by_key(|problem| problem.at.line);
     }
+    found.sort_by_key(|problem| problem.at.line);
     found
 }
 

@@ -19,7 +19,7 @@ mod read;
 mod rules;
 mod write;
 
-pub use check::check;
+pub use check::{check, check_file_name};
 pub use commissioning::Commissioning;
 pub use device_info::DeviceInfo;
 pub use finding::{Finding, Severity};

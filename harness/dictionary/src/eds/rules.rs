@@ -96,6 +96,9 @@ rules! {
     RESTRICTED_COB_ID "E080" Error "a COB-ID is not a restricted CAN-ID";
     SAME_FOR_EVERY_NODE "E081" Warning "a COB-ID of one node has $NODEID";
 
+    FILE_NAME "E085" Warning "the file is called as it says";
+    MISSPELT "E086" Note "the words of a name are free of slips";
+
     NOT_IN_EDS "E090" Warning "an object of the manual is in the EDS";
     NOT_IN_MANUAL "E091" Note "an object of the EDS is in the manual";
     MANUAL_TYPE "E092" Warning "a data type is that of the manual";

@@ -2,11 +2,15 @@
 
 mod cob_ids;
 mod file;
+mod file_name;
 mod lists;
 mod objects;
 mod pdos;
 mod standard;
 mod values;
+mod words;
+
+pub use file_name::check_file_name;
 
 use super::{Eds, Finding};
 use crate::{Dictionary, Object};
@@ -20,6 +24,7 @@ pub fn check(eds: &Eds) -> Vec<Finding> {
     values::check(eds, &mut findings);
     pdos::check(eds, &mut findings);
     cob_ids::check(eds, &mut findings);
+    words::check(eds, &mut findings);
     findings.sort_by_key(|finding| (finding.line, finding.rule.code));
     findings
 }
