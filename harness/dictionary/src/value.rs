@@ -99,7 +99,7 @@ pub(crate) fn integer_fits(value: i128, size: usize) -> bool {
 }
 
 /// Pairs of hexadecimal digits, with or without blanks between the pairs.
-fn octets(text: &str) -> Option<Vec<u8>> {
+pub(crate) fn octets(text: &str) -> Option<Vec<u8>> {
     text.split_ascii_whitespace()
         .flat_map(|word| word.as_bytes().chunks(2))
         .map(|pair| match pair {

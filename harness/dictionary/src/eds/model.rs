@@ -31,6 +31,11 @@ impl Eds {
         self.sections.named(name)
     }
 
+    /// The node-ID that a DCF gives, for which `$NODEID` stands in it.
+    pub fn node_id(&self) -> Option<u8> {
+        self.commissioning.as_ref()?.node_id
+    }
+
     /// The section that starts in `line`.
     pub(super) fn section_at(&self, line: usize) -> Option<Section<'_>> {
         self.sections.at(line)

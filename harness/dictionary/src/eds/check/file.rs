@@ -33,9 +33,11 @@ const DEVICE_KEYS: [&str; 13] = [
     "LSS_Supported",
 ];
 
+const COMMISSIONING_KEYS: [&str; 3] = ["NodeID", "NodeName", "Baudrate"];
+
 const BIT_RATES: [&str; 8] = ["10", "20", "50", "125", "250", "500", "800", "1000"];
 
-const SECTIONS: [&str; 12] = [
+const SECTIONS: [&str; 13] = [
     "FileInfo",
     "DeviceInfo",
     "DummyUsage",
@@ -47,6 +49,7 @@ const SECTIONS: [&str; 12] = [
     "DynamicChannels",
     "Tools",
     "SupportedModules",
+    "ConnectedModules",
     "DeviceComissioning",
 ];
 
@@ -55,6 +58,12 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     mandatory(eds, "DeviceInfo", &DEVICE_KEYS, findings);
     if let Some(section) = eds.section("FileInfo") {
         dates_and_times(section, findings);
+        order_of_dates(section, findings);
+    }
+    for name in ["DeviceComissioning", "DeviceCommissioning"] {
+        if eds.section(name).is_some() {
+            mandatory(eds, name, &COMMISSIONING_KEYS, findings);
+        }
     }
     if let Some(section) = eds.section("DeviceInfo") {
         bit_rates(eds, section, findings);
@@ -93,7 +102,7 @@ fn dates_and_times(section: Section<'_>, findings: &mut Vec<Finding>) {
         let (rule, right, wanted) = if key.is("CreationDate") || key.is("ModificationDate") {
             (
                 &rules::DATE,
-                is_date(key.value),
+                date(key.value).is_some(),
                 "mm-dd-yyyy, as in 10-23-2012",
             )
         } else if key.is("CreationTime") || key.is("ModificationTime") {
@@ -116,11 +125,30 @@ fn dates_and_times(section: Section<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-fn is_date(text: &str) -> bool {
+fn order_of_dates(section: Section<'_>, findings: &mut Vec<Finding>) {
+    let date = |name: &str| {
+        let key = section.filled(name)?;
+        Some((date(key.value)?, key))
+    };
+    if let (Some((made, _)), Some((changed, key))) =
+        (date("CreationDate"), date("ModificationDate"))
+        && changed < made
+    {
+        findings.push(Finding::new(
+            &rules::CHANGED_BEFORE_MADE,
+            key.line,
+            format!("`{}={}` is before CreationDate", key.name, key.value),
+            "write month, day and year in both",
+        ));
+    }
+}
+
+/// Year, month and day.
+fn date(text: &str) -> Option<(u32, u32, u32)> {
     let parts: Vec<Option<u32>> = text.split('-').map(digits).collect();
     let lengths: Vec<usize> = text.split('-').map(str::len).collect();
     let [Some(month @ 1..=12), Some(day), Some(year)] = parts[..] else {
-        return false;
+        return None;
     };
     let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let last = match month {
@@ -129,7 +157,7 @@ fn is_date(text: &str) -> bool {
         4 | 6 | 9 | 11 => 30,
         _ => 31,
     };
-    lengths == [2, 2, 4] && (1..=last).contains(&day)
+    (lengths == [2, 2, 4] && (1..=last).contains(&day)).then_some((year, month, day))
 }
 
 fn is_time(text: &str) -> bool {

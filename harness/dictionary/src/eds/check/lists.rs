@@ -47,6 +47,7 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     for object in eds.dictionary.objects() {
         if let Some(list) = list_of(object.index)
             && !listed.contains_key(&object.index)
+            && !super::is_implied(eds, object)
         {
             findings.push(Finding::new(
                 &rules::NOT_LISTED,
@@ -59,8 +60,10 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
 }
 
 fn missing(eds: &Eds, name: &str, findings: &mut Vec<Finding>) {
-    let mut objects = eds.dictionary.objects();
-    let first = objects.find(|object| list_of(object.index) == Some(name));
+    let first = eds
+        .dictionary
+        .objects()
+        .find(|object| list_of(object.index) == Some(name) && !super::is_implied(eds, object));
     let what = match first {
         Some(object) => format!(
             "[{name}] is missing, but [{:04X}] belongs there",

@@ -162,6 +162,21 @@ fn target(
         ));
     }
     length(mapped, entry.data_type, line, findings);
+    let text = entry.data_type.is_text();
+    if let Some(default) = entry.default_bytes(1).filter(|_| text)
+        && default.len() * 8 > mapped.bits as usize
+    {
+        findings.push(Finding::new(
+            &rules::MAPPED_STRING,
+            line,
+            format!(
+                "{place} is mapped with {} bits, but its default has {} bytes",
+                mapped.bits,
+                default.len()
+            ),
+            "map as many bits as the string has, or shorten the default",
+        ));
+    }
 }
 
 fn goal(direction: Direction) -> &'static str {

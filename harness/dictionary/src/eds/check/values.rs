@@ -4,12 +4,14 @@ use super::super::object_keys::{ObjectKeys, Word};
 use super::super::place::Place;
 use super::super::{Eds, Finding, Section, rules};
 use super::section_of;
+use crate::value::octets;
 use crate::{DataType, Default, Entry, Number, Object};
 
 pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     for object in eds.dictionary.objects() {
         for (sub, entry) in object.entries.iter() {
             limits(eds, object, *sub, entry, findings);
+            characters(eds, object, *sub, entry, findings);
             if matches!(object.index, 0x1400..=0x15FF | 0x1800..=0x19FF) && *sub == 2 {
                 transmission_type(eds, entry, findings);
             }
@@ -149,6 +151,36 @@ fn inside(eds: &Eds, object: &Object, sub: u8, entry: &Entry, findings: &mut Vec
                 section_of(object, sub)
             ),
             "correct the default or the limits",
+        ));
+    }
+}
+
+/// What a string can hold.
+fn characters(eds: &Eds, object: &Object, sub: u8, entry: &Entry, findings: &mut Vec<Finding>) {
+    let Some(Default::Text(text)) = &entry.default else {
+        return;
+    };
+    let (right, wanted) = match entry.data_type {
+        DataType::VisibleString => (
+            text.bytes().all(|byte| matches!(byte, b' '..=b'~')),
+            "a VISIBLE_STRING has the characters 20h to 7Eh; UNICODE_STRING has all",
+        ),
+        DataType::OctetString => (
+            octets(text).is_some(),
+            "write two hexadecimal digits for each byte, as in 0A FF",
+        ),
+        _ => return,
+    };
+    if !right {
+        findings.push(Finding::new(
+            &rules::CHARACTERS,
+            eds.line_of(entry.line, "DefaultValue"),
+            format!(
+                "the default `{text}` of {} is no {:?}",
+                section_of(object, sub),
+                entry.data_type
+            ),
+            wanted,
         ));
     }
 }
