@@ -1,6 +1,7 @@
 //! The suites and devices of a command: what the program carries, or what the user gave in its place.
 
 mod benches;
+mod identity;
 mod near;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,8 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fieldproof_devices::{DeviceKind, Fault, Medium, Variant};
+use fieldproof_dictionary::Dictionary;
+use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
-use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
 use fieldproof_suite::model::{Effect, StimulusName};
@@ -131,6 +133,7 @@ impl Folder {
     /// The folder that is called so from here.
     fn below(&self, name: &str) -> Folder {
         match self {
+            Folder::OnDisk(folder) if name == "." => Folder::OnDisk(folder.clone()),
             Folder::OnDisk(folder) => Folder::OnDisk(folder.join(name)),
             Folder::Embedded(folder) if name == "." => Folder::Embedded(folder.clone()),
             Folder::Embedded(folder) => Folder::Embedded(format!("{folder}/{name}")),
@@ -348,7 +351,12 @@ impl Reader {
         let dictionary = description
             .canopen
             .as_ref()
-            .and_then(|canopen| self.dictionary(folder, &canopen.eds));
+            .and_then(|canopen| self.eds(folder, &canopen.eds))
+            .map(|(eds, path)| {
+                let contradictions = identity::contradictions(&description, file, &eds, &path);
+                self.problems.extend(contradictions);
+                eds.dictionary
+            });
         let map = description
             .modbus
             .as_ref()
@@ -406,7 +414,8 @@ impl Reader {
         }
     }
 
-    fn dictionary(&mut self, folder: &Folder, name: &str) -> Option<Dictionary> {
+    /// The EDS beside a description, and its path.
+    fn eds(&mut self, folder: &Folder, name: &str) -> Option<(Eds, String)> {
         let file = match folder {
             Folder::OnDisk(folder) => input::read_eds(&folder.join(name)),
             Folder::Embedded(_) => folder.file(name),
@@ -420,7 +429,7 @@ impl Reader {
                     .iter()
                     .map(|it| problems::of_used_finding(it, &file.path, &text));
                 self.problems.extend(findings);
-                Some(read.dictionary)
+                Some((read, file.path))
             }
             Err(problem) => {
                 self.problems.push(*problem);
@@ -470,6 +479,13 @@ impl Reader {
 
     fn finish(mut self, selection: &Selection) -> Result<Library, Complaint> {
         self.check_devices_of_suites();
+        // A description that is named twice, by itself and on a bench, is wrong once.
+        let mut told = Vec::new();
+        self.problems.retain(|problem| {
+            let is_new = !told.contains(problem);
+            told.extend(is_new.then(|| problem.clone()));
+            is_new
+        });
         if self
             .problems
             .iter()

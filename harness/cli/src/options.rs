@@ -172,6 +172,9 @@ pub struct EdsCheckOptions {
     /// EDS or DCF files.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
+    /// Compare each file with the object dictionary that a manual prints, written down as a table.
+    #[arg(long, value_name = "TABLE")]
+    pub against: Option<PathBuf>,
     /// How to print the findings.
     #[arg(long, default_value = "text")]
     pub format: Format,

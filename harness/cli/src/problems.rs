@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use fieldproof_dictionary::eds::{self, Finding};
+use fieldproof_dictionary::eds::{self, Finding, manual};
 use fieldproof_dictionary::registers::TableError;
-use fieldproof_report::{Also, Problem, Severity, SourceText, Span};
+use fieldproof_report::{Also, Elsewhere, Problem, Severity, SourceText, Span};
 use fieldproof_suite::{Diagnostic, Position};
 
 pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &Arc<str>) -> Problem {
@@ -27,6 +27,7 @@ pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, text: &Arc<str>) -> Problem
                 words: words.clone(),
             })
             .collect(),
+        elsewhere: Vec::new(),
         notes: Vec::new(),
         help: diagnostic.help.clone(),
     }
@@ -44,6 +45,24 @@ pub(crate) fn of_finding(finding: &Finding, path: &str, text: &Arc<str>) -> Prob
         ..whole_line(severity, finding.line, finding.text.clone(), path, text)
             .note(format!("the rule: {}", finding.rule.title))
             .help(finding.help.clone())
+    }
+}
+
+/// A difference between an EDS file and the table of a manual: a path and a text for each.
+pub(crate) fn of_difference(
+    difference: &manual::Difference,
+    (path, text): (&str, &Arc<str>),
+    (table_path, table): (&str, &Arc<str>),
+) -> Problem {
+    let row = difference.row.map(|line| Elsewhere {
+        path: table_path.to_owned(),
+        at: line_span(line),
+        source: SourceText::Whole(Arc::clone(table)),
+        words: "the manual".to_owned(),
+    });
+    Problem {
+        elsewhere: row.into_iter().collect(),
+        ..of_finding(&difference.finding, path, text)
     }
 }
 
@@ -68,13 +87,17 @@ fn whole_line(
     text: &Arc<str>,
 ) -> Problem {
     Problem {
-        at: Span {
-            line: u32::try_from(line).unwrap_or(0),
-            column: 0,
-            end_column: 0,
-        },
+        at: line_span(line),
         source: SourceText::Whole(Arc::clone(text)),
         ..Problem::new(severity, message).in_file(path)
+    }
+}
+
+fn line_span(line: usize) -> Span {
+    Span {
+        line: u32::try_from(line).unwrap_or(0),
+        column: 0,
+        end_column: 0,
     }
 }
 

@@ -59,9 +59,86 @@ pub struct Object {
     /// Its object code.
     pub kind: ObjectKind,
     /// Its entries by sub-index; a variable or domain has one, at 0.
-    pub entries: BTreeMap<u8, Entry>,
+    pub entries: Entries,
     /// The line of its section, from 1.
     pub line: usize,
+}
+
+/// The entries of an object by sub-index, in that order. Most objects have one: a tree would take more room than it is
+/// worth.
+#[derive(Debug, Clone, PartialEq, std::default::Default)]
+pub struct Entries(Vec<(u8, Entry)>);
+
+impl Entries {
+    /// The entry at `sub`.
+    pub fn get(&self, sub: &u8) -> Option<&Entry> {
+        let at = self.0.binary_search_by_key(sub, |(sub, _)| *sub).ok()?;
+        self.0.get(at).map(|(_, entry)| entry)
+    }
+
+    /// Puts `entry` at `sub`, in place of what was there.
+    pub fn insert(&mut self, sub: u8, entry: Entry) {
+        // Files describe sub-indices in their order.
+        if self.0.last().is_none_or(|(last, _)| *last < sub) {
+            self.0.push((sub, entry));
+            return;
+        }
+        match self.0.binary_search_by_key(&sub, |(sub, _)| *sub) {
+            Ok(at) => {
+                if let Some((_, old)) = self.0.get_mut(at) {
+                    *old = entry;
+                }
+            }
+            Err(at) => self.0.insert(at, (sub, entry)),
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Each sub-index with its entry.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (&u8, &Entry)> {
+        self.0.iter().map(|(sub, entry)| (sub, entry))
+    }
+
+    /// The sub-indices.
+    pub fn keys(&self) -> impl DoubleEndedIterator<Item = &u8> {
+        self.0.iter().map(|(sub, _)| sub)
+    }
+
+    /// The entries.
+    pub fn values(&self) -> impl DoubleEndedIterator<Item = &Entry> {
+        self.0.iter().map(|(_, entry)| entry)
+    }
+
+    /// The entries, to be changed.
+    pub fn values_mut(&mut self) -> impl DoubleEndedIterator<Item = &mut Entry> {
+        self.0.iter_mut().map(|(_, entry)| entry)
+    }
+
+    /// The entry at `sub`, to be changed.
+    pub fn get_mut(&mut self, sub: u8) -> Option<&mut Entry> {
+        let at = self.0.binary_search_by_key(&sub, |(sub, _)| *sub).ok()?;
+        self.0.get_mut(at).map(|(_, entry)| entry)
+    }
+}
+
+impl FromIterator<(u8, Entry)> for Entries {
+    /// Of two entries with one sub-index the later stays.
+    fn from_iter<I: IntoIterator<Item = (u8, Entry)>>(entries: I) -> Entries {
+        let mut made = Entries::default();
+        for (sub, entry) in entries {
+            made.insert(sub, entry);
+        }
+        made
+    }
 }
 
 /// The object code (CiA 301).
@@ -130,6 +207,10 @@ pub struct Entry {
     pub high_limit: Option<Number>,
     /// Its value after a reset to defaults, if one is given.
     pub default: Option<Default>,
+    /// Its value in this device, if a DCF gives one.
+    pub parameter_value: Option<Default>,
+    /// What it is called in this device, if a DCF says so.
+    pub denotation: Option<String>,
     /// Whether it may be mapped into a PDO.
     pub pdo_mapping: bool,
     /// The line of its section, from 1.
@@ -141,6 +222,12 @@ impl Entry {
     /// the string. `None` if no default is given, or if it does not fit the type.
     pub fn default_bytes(&self, node: u8) -> Option<Vec<u8>> {
         self.default.as_ref()?.bytes(self.data_type, node)
+    }
+
+    /// The value that a DCF gives, else the default, in the form of [`Entry::default_bytes`].
+    pub fn configured_bytes(&self, node: u8) -> Option<Vec<u8>> {
+        let value = self.parameter_value.as_ref().or(self.default.as_ref());
+        value?.bytes(self.data_type, node)
     }
 }
 
@@ -164,15 +251,16 @@ pub enum Access {
 impl Access {
     /// The access that `word` names, in any case.
     pub fn from_word(word: &str) -> Option<Access> {
-        Some(match word.to_ascii_lowercase().as_str() {
-            "ro" => Access::ReadOnly,
-            "wo" => Access::WriteOnly,
-            "rw" => Access::ReadWrite,
-            "rwr" => Access::ReadWriteOnRead,
-            "rww" => Access::ReadWriteOnWrite,
-            "const" => Access::Constant,
-            _ => return None,
-        })
+        let all = [
+            Access::ReadOnly,
+            Access::WriteOnly,
+            Access::ReadWrite,
+            Access::ReadWriteOnRead,
+            Access::ReadWriteOnWrite,
+            Access::Constant,
+        ];
+        all.into_iter()
+            .find(|access| access.word().eq_ignore_ascii_case(word))
     }
 
     /// Its word.

@@ -1,23 +1,48 @@
 //! The text of an EDS file as sections, keys and values, each with its line.
 
-/// A `[section]` with its keys in the order of the file.
+use std::ops::Range;
+
+/// A text split into sections, which are views of it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Sections {
+    text: String,
+    heads: Vec<Head>,
+    keys: Vec<KeySpan>,
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Section {
+struct Head {
+    name: Range<usize>,
+    line: usize,
+    /// Its keys, as a part of all keys.
+    keys: Range<usize>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct KeySpan {
+    name: Range<usize>,
+    value: Range<usize>,
+    line: usize,
+}
+
+/// A `[section]` with its keys in the order of the file.
+#[derive(Clone, Copy)]
+pub struct Section<'t> {
     /// Its name as the file has it, without the blanks around it.
-    pub name: String,
+    pub name: &'t str,
     /// Its line, from 1.
     pub line: usize,
-    /// Its keys in the order of the file, repeated ones included.
-    pub keys: Vec<Key>,
+    text: &'t str,
+    keys: &'t [KeySpan],
 }
 
 /// A `key=value`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Key {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Key<'t> {
     /// Its name as the file has it, without the blanks around it.
-    pub name: String,
+    pub name: &'t str,
     /// Everything after the `=`, a `;` included, without the blanks around it.
-    pub value: String,
+    pub value: &'t str,
     /// Its line, from 1.
     pub line: usize,
 }
@@ -31,10 +56,55 @@ pub struct Stray {
     pub line: usize,
 }
 
-impl Section {
+impl Sections {
+    /// Every section in the order of the file.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Section<'_>> {
+        self.heads.iter().map(|head| self.section(head))
+    }
+
+    /// The first section called `name`, in any case.
+    pub(crate) fn named(&self, name: &str) -> Option<Section<'_>> {
+        let mut heads = self.heads.iter();
+        heads
+            .find(|head| slice(&self.text, &head.name).eq_ignore_ascii_case(name))
+            .map(|head| self.section(head))
+    }
+
+    /// The section that starts in `line`.
+    pub(crate) fn at(&self, line: usize) -> Option<Section<'_>> {
+        let at = self.heads.binary_search_by_key(&line, |head| head.line);
+        self.heads.get(at.ok()?).map(|head| self.section(head))
+    }
+
+    fn section(&self, head: &Head) -> Section<'_> {
+        Section {
+            name: slice(&self.text, &head.name),
+            line: head.line,
+            text: &self.text,
+            keys: self.keys.get(head.keys.clone()).unwrap_or_default(),
+        }
+    }
+}
+
+impl<'t> Section<'t> {
+    /// Its keys in the order of the file, repeated ones included.
+    pub fn keys(&self) -> impl ExactSizeIterator<Item = Key<'t>> + Clone + use<'t> {
+        let text = self.text;
+        self.keys.iter().map(move |key| Key {
+            name: slice(text, &key.name),
+            value: slice(text, &key.value),
+            line: key.line,
+        })
+    }
+
     /// The first key of that name, in any case and with any blanks in it.
-    pub fn key(&self, name: &str) -> Option<&Key> {
-        self.keys.iter().find(|key| key.is(name))
+    pub fn key(&self, name: &str) -> Option<Key<'t>> {
+        self.keys().find(|key| key.is(name))
+    }
+
+    /// Like [`Section::key`], but `None` if nothing is behind the `=`.
+    pub fn filled(&self, name: &str) -> Option<Key<'t>> {
+        self.key(name).filter(|key| !key.value.is_empty())
     }
 
     /// Whether it is called `name`, in any case.
@@ -43,14 +113,17 @@ impl Section {
     }
 }
 
-impl Key {
+impl Key<'_> {
     /// Whether it is called `name`, in any case and with any blanks in it.
     pub fn is(&self, name: &str) -> bool {
-        let blanks = || self.name.bytes().any(|byte| byte.is_ascii_whitespace());
         self.name.eq_ignore_ascii_case(name)
             || (self.name.len() > name.len()
-                && blanks()
-                && squeezed(&self.name).eq_ignore_ascii_case(name))
+                && self.has_blanks()
+                && squeezed(self.name).eq_ignore_ascii_case(name))
+    }
+
+    pub(crate) fn has_blanks(&self) -> bool {
+        self.name.contains(char::is_whitespace)
     }
 }
 
@@ -58,37 +131,53 @@ fn squeezed(name: &str) -> String {
     name.chars().filter(|c| !c.is_whitespace()).collect()
 }
 
+fn slice<'t>(text: &'t str, range: &Range<usize>) -> &'t str {
+    text.get(range.clone()).unwrap_or_default()
+}
+
 /// Splits `text` into sections. Values keep every character after the `=`, a `;` included, but the blanks around them.
-pub(crate) fn parse(text: &str) -> (Vec<Section>, Vec<Stray>) {
-    let mut sections: Vec<Section> = Vec::new();
+pub(crate) fn parse(text: &str) -> (Sections, Vec<Stray>) {
+    // Files have some 15 bytes a line, and most lines are keys.
+    let mut keys: Vec<KeySpan> = Vec::with_capacity(text.len() / 15);
+    let mut heads: Vec<Head> = Vec::with_capacity(text.len() / 150);
     let mut strays = Vec::new();
-    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-    for (number, text) in text.lines().enumerate() {
-        let line = number + 1;
-        let text = text.trim();
+    let range = |part: &str| {
+        let start = part.as_ptr().addr() - text.as_ptr().addr();
+        start..start + part.len()
+    };
+    let lines = text.strip_prefix('\u{FEFF}').unwrap_or(text).lines();
+    for (line, text) in (1..).zip(lines.map(str::trim)) {
         if text.is_empty() || text.starts_with(';') {
             continue;
         }
         if let Some(name) = section_name(text) {
-            sections.push(Section {
-                name: name.to_owned(),
+            heads.push(Head {
+                name: range(name),
                 line,
-                keys: Vec::with_capacity(8),
+                keys: keys.len()..keys.len(),
             });
             continue;
         }
-        match (text.split_once('='), sections.last_mut()) {
-            (Some((name, value)), Some(section)) => section.keys.push(Key {
-                name: name.trim().to_owned(),
-                value: value.trim().to_owned(),
-                line,
-            }),
+        match (text.split_once('='), heads.last_mut()) {
+            (Some((name, value)), Some(head)) => {
+                keys.push(KeySpan {
+                    name: range(name.trim_end()),
+                    value: range(value.trim_start()),
+                    line,
+                });
+                head.keys.end = keys.len();
+            }
             _ => strays.push(Stray {
                 text: text.to_owned(),
                 line,
             }),
         }
     }
+    let sections = Sections {
+        text: text.to_owned(),
+        heads,
+        keys,
+    };
     (sections, strays)
 }
 
@@ -107,18 +196,23 @@ mod tests {
         let (sections, strays) =
             parse("; top\r\n[1000]\r\nParameterName = Device Type;\r\n\r\n[ 1001 ] ; why\r\nA=b=c");
         assert!(strays.is_empty());
-        assert_eq!(sections.len(), 2);
-        assert_eq!((sections[0].name.as_str(), sections[0].line), ("1000", 2));
-        let name = sections[0].key("PARAMETERNAME").unwrap();
-        assert_eq!((name.value.as_str(), name.line), ("Device Type;", 3));
-        assert_eq!((sections[1].name.as_str(), sections[1].line), ("1001", 5));
-        assert_eq!(sections[1].key("a").unwrap().value, "b=c");
+        let heads: Vec<_> = sections
+            .iter()
+            .map(|section| (section.name, section.line))
+            .collect();
+        assert_eq!(heads, [("1000", 2), ("1001", 5)]);
+        let first = sections.at(2).unwrap();
+        let name = first.key("PARAMETERNAME").unwrap();
+        assert_eq!((name.value, name.line), ("Device Type;", 3));
+        let second = sections.named("1001").unwrap();
+        assert_eq!(second.key("a").unwrap().value, "b=c");
+        assert!(sections.at(3).is_none() && second.key("b").is_none());
     }
 
     #[test]
     fn strays_are_kept() {
         let (sections, strays) = parse("\u{FEFF}lost=1\n[a]\nno key here\n[b");
-        assert_eq!(sections.len(), 1);
+        assert_eq!(sections.iter().count(), 1);
         let lines: Vec<_> = strays
             .iter()
             .map(|stray| (stray.line, stray.text.as_str()))

@@ -24,14 +24,11 @@ impl Integer {
             None if digits.len() > 1 && digits.starts_with('0') => (digits, 8),
             None => (digits, 10),
         };
-        if !digits.starts_with(|first: char| first.is_digit(radix)) {
+        if digits.starts_with(['+', '-']) {
             return None;
         }
-        let magnitude = i128::from_str_radix(digits, radix).ok()?;
         // Nothing in either format needs more than 64 bits, and sums of such numbers must not overflow.
-        if magnitude > i128::from(u64::MAX) {
-            return None;
-        }
+        let magnitude = i128::from(u64::from_str_radix(digits, radix).ok()?);
         Some(Integer {
             value: if negative { -magnitude } else { magnitude },
             hexadecimal: radix == 16 && !negative,

@@ -12,5 +12,5 @@ pub mod registers;
 mod value;
 
 pub use data_type::DataType;
-pub use dictionary::{Access, Dictionary, Entry, Object, ObjectKind};
+pub use dictionary::{Access, Dictionary, Entries, Entry, Object, ObjectKind};
 pub use value::{Default, Number};

@@ -57,7 +57,7 @@ pub struct Register {
     pub line: usize,
 }
 
-/// A line of a register table that cannot be read.
+/// A line of a table that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {text}")]
 pub struct TableError {

@@ -89,13 +89,17 @@ impl Default {
 
 /// The low `size` bytes of `value` if it fits them, as a signed or as an unsigned number.
 fn integer_bytes(value: i128, size: usize) -> Option<Vec<u8>> {
-    let bits = 8 * u32::try_from(size).ok()?;
-    let fits = value >= -(1_i128 << (bits - 1)) && value < 1_i128 << bits;
-    fits.then(|| value.to_le_bytes().into_iter().take(size).collect())
+    integer_fits(value, size).then(|| value.to_le_bytes().into_iter().take(size).collect())
+}
+
+/// Whether `size` bytes, 1 to 8 of them, can hold `value`, as a signed or as an unsigned number.
+pub(crate) fn integer_fits(value: i128, size: usize) -> bool {
+    let bits = 8 * size.clamp(1, 8);
+    value >= -(1_i128 << (bits - 1)) && value < 1_i128 << bits
 }
 
 /// Pairs of hexadecimal digits, with or without blanks between the pairs.
-fn octets(text: &str) -> Option<Vec<u8>> {
+pub(crate) fn octets(text: &str) -> Option<Vec<u8>> {
     text.split_ascii_whitespace()
         .flat_map(|word| word.as_bytes().chunks(2))
         .map(|pair| match pair {

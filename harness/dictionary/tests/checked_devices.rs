@@ -1,5 +1,8 @@
 //! What the checker finds in the EDS files of the four devices.
 
+use std::collections::BTreeMap;
+
+use fieldproof_dictionary::eds::manual::{self, Table};
 use fieldproof_dictionary::eds::{self, Finding};
 
 macro_rules! fixture {
@@ -69,6 +72,7 @@ const CONTRADICTIONS: &[(&str, &str, usize, &str)] = &[
     ("TC-58", "E066", 3, "6040:00 is sent here and received"),
     ("TC-59", "E067", 4, "[1600] has 4 entries and maps 2"),
     ("TC-63", "E032", 3, "Operation  Signal"),
+    ("TC-63", "E086", 3, "`Intput` in the name `AI 1 Intput`"),
 ];
 
 #[test]
@@ -96,4 +100,173 @@ fn every_contradiction_of_the_teco_file_is_found_and_nothing_else() {
         .cloned()
         .collect();
     assert_eq!(shown(&more), [""; 0]);
+}
+
+#[test]
+fn a_file_is_called_as_it_says() {
+    for (text, name) in [
+        (TECO, "TECO_510_CAN.eds"),
+        (TECO, "teco_510_can.EDS"),
+        (
+            fixture!("liaomiao-encoder/liaomiao-encoder.eds"),
+            "liaomiao-encoder.eds",
+        ),
+        (fixture!("kinco-servo/kinco-servo.eds"), "kinco-servo.eds"),
+        (
+            fixture!("huacheng-ssts1/huacheng-ssts1.eds"),
+            "huacheng-ssts1.eds",
+        ),
+        ("[FileInfo]\nFileName=\n", "any.eds"),
+        ("[DeviceInfo]\n", "any.eds"),
+    ] {
+        assert_eq!(eds::check_file_name(&eds::read(text), name), None);
+    }
+    // TC-64: the name that the manual prints above the file.
+    let found = eds::check_file_name(&eds::read(TECO), "00000373000101920000010000010000");
+    assert_eq!(
+        shown(&[found.unwrap()]),
+        [
+            "E085 line 5: FileName is TECO_510_CAN.eds, but the file is called 00000373000101920000010000010000"
+        ]
+    );
+}
+
+const TECO_MANUAL: &str = fixture!("teco-jn5-cm-can/manual.objects");
+
+/// Contradiction between the file and the table of the manual: its name, code, entry, words of the finding.
+const AGAINST_THE_MANUAL: &[(&str, &str, &str, &str)] = &[
+    ("TC-01", "E093", "1005:00", "rw in the EDS, ro in"),
+    ("TC-65", "E093", "1005:00", "rw in the EDS, ro in"),
+    (
+        "TC-02",
+        "E094",
+        "1006:00",
+        "0x0000000A by default in the EDS, 0 in",
+    ),
+    (
+        "TC-03",
+        "E092",
+        "1008:00",
+        "VisibleString in the EDS, Unsigned32 in",
+    ),
+    (
+        "TC-03",
+        "E092",
+        "1009:00",
+        "VisibleString in the EDS, Unsigned32 in",
+    ),
+    (
+        "TC-03",
+        "E092",
+        "100A:00",
+        "VisibleString in the EDS, Unsigned32 in",
+    ),
+    ("TC-61", "E096", "1016:01", "not supported by the manual"),
+    ("TC-21", "E096", "1016:01", "not supported by the manual"),
+    ("TC-04", "E094", "1600:00", "2 by default in the EDS, 3 in"),
+    (
+        "TC-05",
+        "E094",
+        "1A00:03",
+        "0X604F0010 by default in the EDS, 0x604F0020 in",
+    ),
+    ("TC-06", "E094", "1A01:00", "3 by default in the EDS, 4 in"),
+    (
+        "TC-06",
+        "E094",
+        "1A01:04",
+        "0X00000000 by default in the EDS, 0x60610008 in",
+    ),
+    ("TC-09", "E091", "2025:00", "the manual does not"),
+    ("TC-60", "E096", "2025:2F", "reserved by the manual"),
+    ("TC-62", "E095", "6041:00", "no default in the EDS, 0 in"),
+    (
+        "TC-30",
+        "E092",
+        "6042:00",
+        "Unsigned16 in the EDS, Integer16 in",
+    ),
+    (
+        "TC-30",
+        "E092",
+        "6043:00",
+        "Unsigned16 in the EDS, Integer16 in",
+    ),
+    (
+        "TC-07",
+        "E092",
+        "604F:00",
+        "Unsigned16 in the EDS, Unsigned32 in",
+    ),
+    (
+        "TC-07",
+        "E094",
+        "604F:00",
+        "100 by default in the EDS, 10000 in",
+    ),
+    (
+        "TC-57",
+        "E094",
+        "604F:00",
+        "100 by default in the EDS, 10000 in",
+    ),
+    (
+        "TC-07",
+        "E092",
+        "6050:00",
+        "Unsigned16 in the EDS, Unsigned32 in",
+    ),
+];
+
+#[test]
+fn every_contradiction_with_the_manual_is_found_and_nothing_else() {
+    let table = Table::parse(TECO_MANUAL).unwrap();
+    let differences = manual::compare(&eds::read(TECO), &table);
+    let mut expected: BTreeMap<(&str, &str), &str> = BTreeMap::new();
+    for (id, code, entry, words) in AGAINST_THE_MANUAL {
+        expected.insert((code, entry), words);
+        let found = differences.iter().find(|difference| {
+            let finding = &difference.finding;
+            finding.rule.code == *code && finding.text.contains(entry)
+        });
+        let text = found.map(|difference| difference.finding.text.as_str());
+        assert!(
+            text.is_some_and(|text| text.contains(words)),
+            "{id}: {text:?}"
+        );
+    }
+    assert_eq!(differences.len(), expected.len(), "{differences:#?}");
+}
+
+/// Rows of chapter 4.5 of the manual that differ from the file.
+const DIFFERING: [&str; 14] = [
+    "1005:00", "1006:00", "1008:00", "1009:00", "100A:00", "1600:00", "1A00:03", "1A01:00",
+    "1A01:04", "6041:00", "6042:00", "6043:00", "604F:00", "6050:00",
+];
+
+#[test]
+fn of_the_64_rows_of_the_object_dictionary_14_differ() {
+    let (head, group) = TECO_MANUAL.split_once("# Chapter 4.7").unwrap();
+    assert!(group.lines().skip(2).all(|line| line.starts_with("2025:")));
+    let table = Table::parse(head).unwrap();
+    assert_eq!(table.len(), 64);
+    let eds = eds::read(TECO);
+    let mut differing = Vec::new();
+    for row in table.rows() {
+        // One row alone, so that every finding is about it or about what it leaves out.
+        let alone = Table::parse(head.lines().nth(row.line - 1).unwrap()).unwrap();
+        let codes: Vec<&str> = manual::compare(&eds, &alone)
+            .iter()
+            .filter(|difference| difference.row.is_some())
+            .map(|difference| difference.finding.rule.code)
+            .collect();
+        let place = format!("{:04X}:{:02X}", row.index, row.sub);
+        match place.as_str() {
+            // It agrees; the manual says beside it that the device does not support it.
+            "1016:01" => assert_eq!(codes, ["E096"]),
+            _ if codes.is_empty() => {}
+            _ => differing.push(place),
+        }
+    }
+    assert_eq!(differing, DIFFERING);
 }

@@ -119,7 +119,7 @@ fn teco_with_its_contradictions() {
         ]
     );
     assert_eq!(number(&eds, 0x2025, 0, 1), 0x30);
-    assert_eq!(group.entries[&2].name, "Operation  Signal");
+    assert_eq!(group.entries.get(&2).unwrap().name, "Operation  Signal");
     assert_eq!(number(&eds, 0x1014, 0, 1), 0x81);
     assert_eq!(number(&eds, 0x1401, 1, 63), 0x33F);
     assert_eq!(number(&eds, 0x1400, 2, 1), 254);

@@ -158,7 +158,7 @@ fn comments_and_semicolons_in_values() {
 #[test]
 fn unknown_sections_and_keys() {
     let eds = eds::read(
-        "[DynamicChannels]\n[Tools]\nItems=1\n[2000Value]\n1=2\n[20001]\nA=1\n[2000subG]\nA=1\n\
+        "[DynamicChannels]\n[Tools]\nItems=1\n[2000Valu]\n1=2\n[20001]\nA=1\n[2000subG]\nA=1\n\
          [2000]\nDataType=5\nAccessType=ro\nObjFlags=1\nColour=blue\n",
     );
     assert_eq!(eds.findings, []);

@@ -16,6 +16,6 @@ mod summary;
 pub use case_text::case_text;
 pub use console::{Console, ConsoleOptions};
 pub use ink::Ink;
-pub use problem::{Also, Problem, Severity, SourceText, Span};
+pub use problem::{Also, Elsewhere, Problem, Severity, SourceText, Span};
 pub use render::render;
 pub use summary::{LaneSummary, ListedCase, SuiteSummary, summary_text};

@@ -82,6 +82,20 @@ pub struct Also {
     pub words: String,
 }
 
+/// A place in another file that matters.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Elsewhere {
+    /// The file as the user named it.
+    pub path: String,
+    /// Where in it.
+    pub at: Span,
+    /// The text it is in.
+    #[serde(skip)]
+    pub source: SourceText,
+    /// Why it matters: `the manual`.
+    pub words: String,
+}
+
 /// Something that is wrong, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Problem {
@@ -102,6 +116,9 @@ pub struct Problem {
     pub label: String,
     /// Other places in the same file that matter.
     pub also: Vec<Also>,
+    /// Places in other files that matter.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub elsewhere: Vec<Elsewhere>,
     /// What else there is to know; a note may have several lines.
     pub notes: Vec<String>,
     /// What to do.
@@ -120,6 +137,7 @@ impl Problem {
             source: SourceText::Missing,
             label: String::new(),
             also: Vec::new(),
+            elsewhere: Vec::new(),
             notes: Vec::new(),
             help: None,
         }
@@ -163,6 +181,7 @@ impl From<&Failure> for Problem {
             source: SourceText::Line(failure.place.text.clone()),
             label: String::new(),
             also: Vec::new(),
+            elsewhere: Vec::new(),
             notes: failure.notes.clone(),
             help: None,
         }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use crate::ink::{Ink, verdict_style};
-use crate::problem::{Also, Problem, Severity, SourceText, Span};
+use crate::problem::{Also, Elsewhere, Problem, Severity, SourceText, Span};
 
 /// More text than this is not given to the snippet renderer: places further apart are shown as notes.
 const LONGEST_EXCERPT_BYTES: usize = 100_000;
@@ -39,6 +39,14 @@ pub fn render(problem: &Problem, ink: Ink) -> String {
             let place = format!("{}:{}:{}: {words}", problem.path, at.line, at.column);
             group = group.element(Level::NOTE.message(place));
         }
+    }
+    for place in &problem.elsewhere {
+        group = match other_file(place) {
+            Some(snippet) => group.element(snippet),
+            None => group.element(
+                Level::NOTE.message(format!("{}:{}: {}", place.path, place.at.line, place.words)),
+            ),
+        };
     }
     for note in &problem.notes {
         group = group.element(Level::NOTE.message(note.as_str()));
@@ -87,6 +95,25 @@ fn origin(problem: &Problem) -> Origin<'_> {
         0 => origin,
         line => origin.line(line as usize).char_column(column),
     }
+}
+
+/// The line of a place in another file; `None` if the line is not at hand, or very long.
+fn other_file(place: &Elsewhere) -> Option<Snippet<'_, annotate_snippets::Annotation<'_>>> {
+    let line = match &place.source {
+        SourceText::Missing => return None,
+        SourceText::Line(line) => line,
+        SourceText::Whole(text) => line_of(text, place.at.line)?,
+    };
+    let excerpt = one_line(line, place.at);
+    let mark = AnnotationKind::Context
+        .span(excerpt.primary.clone())
+        .label(place.words.as_str());
+    (!excerpt.shortened).then(|| {
+        Snippet::source(excerpt.text)
+            .line_start(excerpt.first_line)
+            .path(place.path.as_str())
+            .annotation(mark)
+    })
 }
 
 /// The part of a text that is shown.

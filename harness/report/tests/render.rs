@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use fieldproof_report::{Also, Ink, Problem, Severity, SourceText, Span, render};
+use fieldproof_report::{Also, Elsewhere, Ink, Problem, Severity, SourceText, Span, render};
 use proptest::prelude::*;
 
 fn at(line: u32, column: u32, end_column: u32) -> Span {
@@ -131,4 +131,31 @@ proptest! {
         prop_assert!(rendered.starts_with("error[S004]: unknown verb"), "{rendered}");
         prop_assert!(rendered.contains("suites/nmt.yaml"), "{rendered}");
     }
+}
+
+#[test]
+fn place_in_another_file_is_shown_too() {
+    let mut problem = unknown_verb();
+    problem.help = None;
+    problem.label = String::new();
+    problem.elsewhere = vec![Elsewhere {
+        path: "verbs.txt".to_owned(),
+        at: at(2, 0, 0),
+        source: SourceText::Whole(Arc::from("nmt\nsdo-read\n")),
+        words: "the verb".to_owned(),
+    }];
+    let expected = r#"error[S004]: unknown verb "sdo-raed"
+ --> suites/nmt.yaml:2:5
+  |
+2 |   - sdo-raed: {}
+  |     ^^^^^^^^
+  |
+ ::: verbs.txt:2:1
+  |
+2 | sdo-read
+  | -------- the verb
+"#;
+    assert_eq!(render(&problem, Ink::Plain), expected);
+    problem.elsewhere[0].source = SourceText::Missing;
+    assert!(render(&problem, Ink::Plain).contains("= note: verbs.txt:2: the verb\n"));
 }

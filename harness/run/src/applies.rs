@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature};
-use fieldproof_suite::model::{Case, Effect, Need, Protocol, StimulusName};
+use fieldproof_suite::model::{
+    Case, Effect, Located, Need, Protocol, ReadExpectation, SdoRead, Step, StimulusName,
+};
 
 /// What the bench has and permits.
 #[derive(Debug, Clone)]
@@ -30,6 +32,7 @@ pub fn skip_reason(
 ) -> Option<String> {
     missing_port(protocol, bench)
         .or_else(|| missing_need(case, device, bench))
+        .or_else(|| missing_claim(case, device))
         .or_else(|| missing_permission(case, device, bench))
         .or_else(|| wrong_address(case, bench))
 }
@@ -57,6 +60,26 @@ fn missing_need(case: &Case, device: &DeviceDescription, bench: &Bench) -> Optio
             stimulus_name(*name)
         )),
         _ => None,
+    })
+}
+
+fn missing_claim(case: &Case, device: &DeviceDescription) -> Option<String> {
+    let steps = case.control.iter().chain(&case.steps);
+    expects_unclaimed(steps, device)
+        .then(|| "the device does not claim this part of its identity".to_owned())
+}
+
+fn expects_unclaimed<'s>(
+    steps: impl IntoIterator<Item = &'s Located<Step>>,
+    device: &DeviceDescription,
+) -> bool {
+    steps.into_iter().any(|step| match &step.value {
+        Step::SdoRead(SdoRead {
+            expect: ReadExpectation::Claimed(claim),
+            ..
+        }) => device.identity.claimed(*claim).is_none(),
+        Step::Repeat(repeat) => expects_unclaimed(&repeat.steps, device),
+        _ => false,
     })
 }
 

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::Position;
+use crate::identity::Identity;
 use crate::model::{Citation, Effect, Source};
 use crate::read_with::{address, node};
 
@@ -21,6 +22,8 @@ pub struct DeviceDescription {
     pub title: String,
     /// Documents it cites.
     pub sources: BTreeMap<String, Source>,
+    /// Who it claims to be.
+    pub identity: Identity,
     /// Its ports by role.
     pub ports: BTreeMap<String, PortDescription>,
     /// The CANopen side.

@@ -14,6 +14,7 @@ mod documented;
 mod expand;
 mod file;
 mod forms;
+pub mod identity;
 mod lines;
 mod load;
 pub mod model;

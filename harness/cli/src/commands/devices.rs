@@ -1,8 +1,11 @@
 //! `fieldproof devices` and `fieldproof faults`
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use fieldproof_run::feature_name;
+use fieldproof_suite::identity::{Claim, Identity};
+use fieldproof_suite::scalar::Value;
 use serde::Serialize;
 
 use crate::complaint::Complaint;
@@ -18,6 +21,7 @@ struct ListedDevice<'a> {
     ports: Vec<&'a str>,
     node: Option<u8>,
     address: Option<u8>,
+    identity: BTreeMap<&'static str, String>,
     features: Vec<&'static str>,
     deviations: Vec<&'a str>,
     faults: Vec<&'static str>,
@@ -49,6 +53,7 @@ fn listed(device: &Device) -> ListedDevice<'_> {
         ports: description.ports.keys().map(String::as_str).collect(),
         node: description.canopen.as_ref().map(|canopen| canopen.node),
         address: description.modbus.as_ref().map(|modbus| modbus.address),
+        identity: identity(&description.identity),
         features: description
             .features
             .iter()
@@ -68,6 +73,32 @@ fn listed(device: &Device) -> ListedDevice<'_> {
     }
 }
 
+/// What is claimed, as it is written in a description.
+fn identity(identity: &Identity) -> BTreeMap<&'static str, String> {
+    let claims = Claim::ALL.into_iter().filter_map(|claim| {
+        let shown = match identity.claimed(claim)?.value {
+            Value::Number(number) => format!("{number:#010X}"),
+            Value::Text(text) => text,
+            Value::Saved(_) | Value::Duration(_) => return None,
+        };
+        Some((claim.name(), shown))
+    });
+    let mut claims: BTreeMap<&'static str, String> = claims.collect();
+    if let Some(modbus) = &identity.modbus {
+        let texts = [
+            ("modbus vendor-name", &modbus.vendor_name),
+            ("modbus product-code", &modbus.product_code),
+            ("modbus revision", &modbus.revision),
+        ];
+        claims.extend(
+            texts
+                .into_iter()
+                .filter_map(|(name, text)| Some((name, text.clone()?))),
+        );
+    }
+    claims
+}
+
 fn describe(text: &mut String, device: &ListedDevice<'_>) {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}  {}", device.device, device.title);
@@ -80,6 +111,11 @@ fn describe(text: &mut String, device: &ListedDevice<'_>) {
     line("ports", device.ports.join(", "));
     line("node", number(device.node));
     line("address", number(device.address));
+    let claims = device
+        .identity
+        .iter()
+        .map(|(name, value)| format!("{name} {value}"));
+    line("identity", claims.collect::<Vec<_>>().join(", "));
     line("features", device.features.join(", "));
     line("deviates", device.deviations.join(", "));
     line("variants", device.variants.join(", "));

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Finding, Section, field};
+use crate::ini::Sections;
 
 /// What the file says about the device as a whole; `None` where it says nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -37,42 +38,42 @@ pub struct DeviceInfo {
     pub transmit_pdos: Option<u16>,
     /// `LSS_Supported`
     pub lss_supported: Option<bool>,
-    /// `CompactPDO`
+    /// `CompactPDO`: bit n is set if the communication parameters that have no sections have sub-index n + 1.
     pub compact_pdo: Option<u8>,
 }
 
-pub(super) fn read(sections: &[Section], findings: &mut Vec<Finding>) -> DeviceInfo {
-    let section = sections.iter().find(|section| section.is("DeviceInfo"));
-    let Some(section) = section else {
+pub(super) fn read(sections: &Sections, findings: &mut Vec<Finding>) -> DeviceInfo {
+    let Some(section) = sections.named("DeviceInfo") else {
         return DeviceInfo::default();
     };
+    let key = |name: &str| section.filled(name);
     DeviceInfo {
-        vendor_name: field::text(section, "VendorName"),
-        vendor_number: field::unsigned(section, "VendorNumber", findings),
-        product_name: field::text(section, "ProductName"),
-        product_number: field::unsigned(section, "ProductNumber", findings),
-        revision_number: field::unsigned(section, "RevisionNumber", findings),
-        order_code: field::text(section, "OrderCode"),
+        vendor_name: field::text(key("VendorName")),
+        vendor_number: field::unsigned(key("VendorNumber"), findings),
+        product_name: field::text(key("ProductName")),
+        product_number: field::unsigned(key("ProductNumber"), findings),
+        revision_number: field::unsigned(key("RevisionNumber"), findings),
+        order_code: field::text(key("OrderCode")),
         bit_rates_kbit_per_s: bit_rates(section, findings),
-        simple_boot_up_master: field::flag(section, "SimpleBootUpMaster", findings),
-        simple_boot_up_slave: field::flag(section, "SimpleBootUpSlave", findings),
-        granularity_bits: field::unsigned(section, "Granularity", findings),
-        dynamic_channels_supported: field::unsigned(section, "DynamicChannelsSupported", findings),
-        group_messaging: field::flag(section, "GroupMessaging", findings),
-        receive_pdos: field::unsigned(section, "NrOfRXPDO", findings),
-        transmit_pdos: field::unsigned(section, "NrOfTXPDO", findings),
-        lss_supported: field::flag(section, "LSS_Supported", findings),
-        compact_pdo: field::unsigned(section, "CompactPDO", findings),
+        simple_boot_up_master: field::flag(key("SimpleBootUpMaster"), findings),
+        simple_boot_up_slave: field::flag(key("SimpleBootUpSlave"), findings),
+        granularity_bits: field::unsigned(key("Granularity"), findings),
+        dynamic_channels_supported: field::unsigned(key("DynamicChannelsSupported"), findings),
+        group_messaging: field::flag(key("GroupMessaging"), findings),
+        receive_pdos: field::unsigned(key("NrOfRXPDO"), findings),
+        transmit_pdos: field::unsigned(key("NrOfTXPDO"), findings),
+        lss_supported: field::flag(key("LSS_Supported"), findings),
+        compact_pdo: field::unsigned(key("CompactPDO"), findings),
     }
 }
 
-fn bit_rates(section: &Section, findings: &mut Vec<Finding>) -> BTreeSet<u32> {
+fn bit_rates(section: Section<'_>, findings: &mut Vec<Finding>) -> BTreeSet<u32> {
     let mut rates = BTreeSet::new();
-    for key in &section.keys {
+    for key in section.keys() {
         let name = key.name.to_ascii_lowercase();
         let rate = name.strip_prefix("baudrate_").map(str::parse);
         if let Some(Ok(rate)) = rate
-            && field::flag(section, &key.name, findings) == Some(true)
+            && field::flag(section.filled(key.name), findings) == Some(true)
         {
             rates.insert(rate);
         }

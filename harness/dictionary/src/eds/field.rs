@@ -1,27 +1,22 @@
 //! Typed values of keys, with a finding where a value is not of its type.
 
 use super::finding::Finding;
-use super::{Key, Section, rules};
+use super::{Key, rules};
 use crate::integer::Integer;
+use crate::value::integer_fits;
 use crate::{DataType, Default, Number};
 
-/// The value of `name` in `section`; `None` if the key is missing or empty.
-pub(super) fn key<'s>(section: &'s Section, name: &str) -> Option<&'s Key> {
-    section.key(name).filter(|key| !key.value.is_empty())
-}
-
-pub(super) fn text(section: &Section, name: &str) -> Option<String> {
-    key(section, name).map(|key| key.value.clone())
+pub(super) fn text(key: Option<Key<'_>>) -> Option<String> {
+    key.map(|key| key.value.to_owned())
 }
 
 /// An unsigned number that fits `T`.
 pub(super) fn unsigned<T: TryFrom<i128>>(
-    section: &Section,
-    name: &str,
+    key: Option<Key<'_>>,
     findings: &mut Vec<Finding>,
 ) -> Option<T> {
-    let key = key(section, name)?;
-    let number = Integer::parse(&key.value).and_then(|integer| T::try_from(integer.value).ok());
+    let key = key?;
+    let number = Integer::parse(key.value).and_then(|integer| T::try_from(integer.value).ok());
     if number.is_none() {
         findings.push(refused(key, "a number that fits"));
     }
@@ -29,9 +24,9 @@ pub(super) fn unsigned<T: TryFrom<i128>>(
 }
 
 /// 0 or 1; any other number means 1.
-pub(super) fn flag(section: &Section, name: &str, findings: &mut Vec<Finding>) -> Option<bool> {
-    let key = key(section, name)?;
-    let number = Integer::parse(&key.value).map(|integer| integer.value);
+pub(super) fn flag(key: Option<Key<'_>>, findings: &mut Vec<Finding>) -> Option<bool> {
+    let key = key?;
+    let number = Integer::parse(key.value).map(|integer| integer.value);
     match number {
         Some(0 | 1) => {}
         Some(_) => findings.push(Finding::new(
@@ -47,41 +42,29 @@ pub(super) fn flag(section: &Section, name: &str, findings: &mut Vec<Finding>) -
 
 /// A limit of an entry of type `data_type`.
 pub(super) fn limit(
-    section: &Section,
-    name: &str,
+    key: Option<Key<'_>>,
     data_type: DataType,
     findings: &mut Vec<Finding>,
 ) -> Option<Number> {
-    let key = key(section, name)?;
-    let number = number(&key.value, data_type);
+    let key = key?;
+    let number = number(key.value, data_type);
     if number.is_none() {
         findings.push(refused(key, "a whole number or $NODEID plus one"));
     }
     number
 }
 
-/// The value of `name` as a default of an entry of type `data_type`.
+/// The default, or the value in one device, of an entry of type `data_type`.
 pub(super) fn default(
-    section: &Section,
-    name: &str,
+    key: Option<Key<'_>>,
     data_type: DataType,
     findings: &mut Vec<Finding>,
 ) -> Option<Default> {
-    let key = key(section, name)?;
-    let default = if data_type.is_text() {
-        Some(Default::Text(key.value.clone()))
-    } else if data_type.is_real() {
-        real(&key.value, data_type)
-    } else {
-        number(&key.value, data_type)
-            .map(Default::Number)
-            .or_else(|| {
-                matches!(data_type, DataType::Unknown(_)).then(|| Default::Text(key.value.clone()))
-            })
-    };
+    let key = key?;
+    let default = value(key.value, data_type);
     match &default {
         None => findings.push(refused(key, "a value of its data type")),
-        Some(value) if data_type.bits().is_some() && value.bytes(data_type, 1).is_none() => {
+        Some(value) if !fits(value, data_type) => {
             findings.push(Finding::new(
                 &rules::DEFAULT_NOT_OF_TYPE,
                 key.line,
@@ -92,6 +75,28 @@ pub(super) fn default(
         Some(_) => {}
     }
     default
+}
+
+/// Whether `value` can be had in `data_type`, where that has a size.
+fn fits(value: &Default, data_type: DataType) -> bool {
+    match (value, data_type.bytes()) {
+        (_, None) => true,
+        (Default::Number(number), Some(size)) => integer_fits(number.value(1), size),
+        (Default::Text(_), Some(_)) => value.bytes(data_type, 1).is_some(),
+    }
+}
+
+/// `text` as a default of an entry of type `data_type`.
+pub(super) fn value(text: &str, data_type: DataType) -> Option<Default> {
+    if data_type.is_text() {
+        return Some(Default::Text(text.to_owned()));
+    }
+    if data_type.is_real() {
+        return real(text, data_type);
+    }
+    number(text, data_type).map(Default::Number).or_else(|| {
+        matches!(data_type, DataType::Unknown(_)).then(|| Default::Text(text.to_owned()))
+    })
 }
 
 /// A real number: a bit pattern in hexadecimal, or a decimal fraction.
@@ -109,6 +114,9 @@ fn real(text: &str, data_type: DataType) -> Option<Default> {
 
 /// An integer, or a sum of one `$NODEID` and integers in any order.
 fn number(text: &str, data_type: DataType) -> Option<Number> {
+    if let Some(integer) = Integer::parse(text) {
+        return Some(Number::absolute(in_type(integer, data_type)));
+    }
     let mut nodes = 0_u8;
     let mut offset = 0_i128;
     for term in text.split('+') {
@@ -116,20 +124,21 @@ fn number(text: &str, data_type: DataType) -> Option<Number> {
             nodes = nodes.checked_add(1)?;
         } else {
             let integer = Integer::parse(term)?;
-            offset = offset.checked_add(match data_type.bits() {
-                Some(bits) if data_type.is_signed() => integer.as_signed(bits),
-                _ => integer.value,
-            })?;
+            offset = offset.checked_add(in_type(integer, data_type))?;
         }
     }
-    match nodes {
-        0 if !text.trim_start_matches(['+', '-']).contains('+') => Some(Number::absolute(offset)),
-        1 => Some(Number::relative(offset)),
-        _ => None,
+    (nodes == 1).then(|| Number::relative(offset))
+}
+
+/// The value of `integer`, which may be the bit pattern of a negative number of a signed type.
+fn in_type(integer: Integer, data_type: DataType) -> i128 {
+    match data_type.bits() {
+        Some(bits) if data_type.is_signed() => integer.as_signed(bits),
+        _ => integer.value,
     }
 }
 
-fn refused(key: &Key, wanted: &str) -> Finding {
+fn refused(key: Key<'_>, wanted: &str) -> Finding {
     Finding::losing(
         &rules::UNREADABLE_VALUE,
         key.line,
@@ -138,6 +147,6 @@ fn refused(key: &Key, wanted: &str) -> Finding {
     )
 }
 
-fn entry(key: &Key) -> String {
+fn entry(key: Key<'_>) -> String {
     format!("{}={}", key.name, key.value)
 }

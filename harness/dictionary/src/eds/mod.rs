@@ -5,17 +5,22 @@
 //! becomes a [`Finding`]; [`check`] finds what else breaks a rule.
 
 mod check;
+mod commissioning;
+mod compact;
 mod device_info;
 mod field;
 mod finding;
+pub mod manual;
 mod model;
+mod object_keys;
 mod objects;
 mod place;
 mod read;
 mod rules;
 mod write;
 
-pub use check::check;
+pub use check::{check, check_file_name};
+pub use commissioning::Commissioning;
 pub use device_info::DeviceInfo;
 pub use finding::{Finding, Severity};
 pub use model::Eds;

@@ -2,65 +2,80 @@
 
 use std::collections::BTreeMap;
 
+use super::object_keys::{ObjectKeys, Word};
 use super::place::{Place, place};
-use super::{Finding, Section, field, rules};
-use crate::{Access, DataType, Default, Dictionary, Entry, Number, Object, ObjectKind};
+use super::{Finding, Section, compact, field, rules};
+use crate::ini::Sections;
+use crate::integer::Integer;
+use crate::{Access, DataType, Entries, Entry, Object, ObjectKind};
 
-pub(super) fn read(sections: &[Section], findings: &mut Vec<Finding>) -> Dictionary {
+pub(super) fn read(sections: &Sections, findings: &mut Vec<Finding>) -> BTreeMap<u16, Object> {
     let mut objects: BTreeMap<u16, Object> = BTreeMap::new();
-    for section in sections {
-        if let Some(Place::Object(index)) = place(&section.name) {
-            match objects.get(&index) {
+    let mut later = Vec::new();
+    for section in sections.iter() {
+        match place(section.name) {
+            Some(Place::Object(index)) => match objects.get(&index) {
                 Some(first) => findings.push(repeated(section, first.line)),
                 None => {
                     objects.insert(index, object(index, section, findings));
                 }
-            }
+            },
+            // Its object may come after it.
+            Some(Place::Entry(index, sub)) => later.push((index, sub, section)),
+            _ => {}
         }
     }
     let mut lines: BTreeMap<(u16, u8), usize> = BTreeMap::new();
-    for section in sections {
-        if let Some(Place::Entry(index, sub)) = place(&section.name) {
-            let first = *lines.entry((index, sub)).or_insert(section.line);
-            if first != section.line {
-                findings.push(repeated(section, first));
-                continue;
-            }
-            let object = objects
-                .entry(index)
-                .or_insert_with(|| orphan(index, section, findings));
-            // An entry of its own says more than what the object's section implies.
-            object.entries.insert(sub, entry(section, findings));
+    for (index, sub, section) in later {
+        let first = *lines.entry((index, sub)).or_insert(section.line);
+        if first != section.line {
+            findings.push(repeated(section, first));
+            continue;
         }
+        let object = objects
+            .entry(index)
+            .or_insert_with(|| orphan(index, section, findings));
+        // An entry of its own says more than what the object's section implies.
+        let keys = ObjectKeys::of(section);
+        let name = field::text(keys.get(Word::ParameterName)).unwrap_or_default();
+        object
+            .entries
+            .insert(sub, entry(section, &keys, name, findings));
     }
-    objects.into_values().collect()
+    objects
 }
 
-fn object(index: u16, section: &Section, findings: &mut Vec<Finding>) -> Object {
-    let code = field::unsigned(section, "ObjectType", findings).unwrap_or(7);
+fn object(index: u16, section: Section<'_>, findings: &mut Vec<Finding>) -> Object {
+    let keys = ObjectKeys::of(section);
+    let name = field::text(keys.get(Word::ParameterName)).unwrap_or_default();
+    let code = field::unsigned(keys.get(Word::ObjectType), findings).unwrap_or(7);
     let kind = ObjectKind::from_code(code);
-    let mut entries = BTreeMap::new();
-    let compact: Option<u8> = field::unsigned(section, "CompactSubObj", findings);
-    match (kind, compact) {
-        (ObjectKind::Array | ObjectKind::Record, Some(count)) if count > 0 => {
-            entries = compact_entries(section, count, findings);
-        }
-        (ObjectKind::Variable | ObjectKind::Domain | ObjectKind::DefType, _) => {
-            entries.insert(0, entry(section, findings));
-        }
-        _ => {}
+    let mut entries = Entries::default();
+    let count: Option<u8> = field::unsigned(keys.get(Word::CompactSubObj), findings);
+    if has_value(kind) {
+        entries.insert(0, entry(section, &keys, name.clone(), findings));
+    } else if let (ObjectKind::Array | ObjectKind::Record, Some(count @ 1..)) = (kind, count) {
+        entries = compact::entries(&entry(section, &keys, name.clone(), findings), count);
     }
     Object {
         index,
-        name: field::text(section, "ParameterName").unwrap_or_default(),
+        name,
         kind,
         entries,
         line: section.line,
     }
 }
 
+/// Whether the section of an object of this kind describes a value.
+pub(super) fn has_value(kind: ObjectKind) -> bool {
+    matches!(
+        kind,
+        ObjectKind::Variable | ObjectKind::Domain | ObjectKind::DefType
+    )
+}
+
 /// An object whose entries have sections while it has none.
-fn orphan(index: u16, section: &Section, findings: &mut Vec<Finding>) -> Object {
+fn orphan(index: u16, section: Section<'_>, findings: &mut Vec<Finding>) -> Object {
     findings.push(Finding::new(
         &rules::ORPHAN,
         section.line,
@@ -71,63 +86,39 @@ fn orphan(index: u16, section: &Section, findings: &mut Vec<Finding>) -> Object 
         index,
         name: String::new(),
         kind: ObjectKind::Record,
-        entries: BTreeMap::new(),
+        entries: Entries::default(),
         line: section.line,
     }
 }
 
-/// `CompactSubObj=N`: entries 1 to N are as the object's section says, entry 0 counts them.
-fn compact_entries(
-    section: &Section,
-    count: u8,
+fn entry(
+    section: Section<'_>,
+    keys: &ObjectKeys<'_>,
+    name: String,
     findings: &mut Vec<Finding>,
-) -> BTreeMap<u8, Entry> {
-    let number = Entry {
-        name: "NrOfObjects".to_owned(),
-        data_type: DataType::Unsigned8,
-        access: Access::ReadOnly,
-        low_limit: None,
-        high_limit: None,
-        default: Some(Default::Number(Number::absolute(i128::from(count)))),
-        pdo_mapping: false,
-        line: section.line,
-    };
-    let every = entry(section, findings);
-    let each = (1..=count).map(|sub| {
-        let name = format!("{}{sub}", every.name);
-        (
-            sub,
-            Entry {
-                name,
-                ..every.clone()
-            },
-        )
-    });
-    std::iter::once((0, number)).chain(each).collect()
-}
-
-fn entry(section: &Section, findings: &mut Vec<Finding>) -> Entry {
-    let data_type = data_type(section, findings);
+) -> Entry {
+    let data_type = data_type(section, keys, findings);
     Entry {
-        name: field::text(section, "ParameterName").unwrap_or_default(),
+        name,
         data_type,
-        access: access(section, findings),
-        low_limit: field::limit(section, "LowLimit", data_type, findings),
-        high_limit: field::limit(section, "HighLimit", data_type, findings),
-        default: field::default(section, "DefaultValue", data_type, findings),
-        pdo_mapping: field::flag(section, "PDOMapping", findings).unwrap_or(false),
+        access: access(section, keys, findings),
+        low_limit: field::limit(keys.get(Word::LowLimit), data_type, findings),
+        high_limit: field::limit(keys.get(Word::HighLimit), data_type, findings),
+        default: field::default(keys.get(Word::DefaultValue), data_type, findings),
+        parameter_value: field::default(keys.get(Word::ParameterValue), data_type, findings),
+        denotation: field::text(keys.get(Word::Denotation)),
+        pdo_mapping: field::flag(keys.get(Word::PdoMapping), findings).unwrap_or(false),
         line: section.line,
     }
 }
 
-fn data_type(section: &Section, findings: &mut Vec<Finding>) -> DataType {
-    match field::unsigned(section, "DataType", findings) {
+fn data_type(section: Section<'_>, keys: &ObjectKeys<'_>, findings: &mut Vec<Finding>) -> DataType {
+    match field::unsigned(keys.get(Word::DataType), findings) {
         Some(code) => DataType::from_code(code),
         None => {
-            let domain = field::key(section, "ObjectType").is_some_and(|key| {
-                crate::integer::Integer::parse(&key.value).is_some_and(|code| code.value == 2)
-            });
-            if domain {
+            let kind = keys.get(Word::ObjectType);
+            let kind = kind.and_then(|key| Integer::parse(key.value));
+            if kind.is_some_and(|code| code.value == 2) {
                 return DataType::Domain;
             }
             findings.push(Finding::new(
@@ -141,9 +132,9 @@ fn data_type(section: &Section, findings: &mut Vec<Finding>) -> DataType {
     }
 }
 
-fn access(section: &Section, findings: &mut Vec<Finding>) -> Access {
-    let key = field::key(section, "AccessType");
-    key.and_then(|key| Access::from_word(&key.value))
+fn access(section: Section<'_>, keys: &ObjectKeys<'_>, findings: &mut Vec<Finding>) -> Access {
+    let key = keys.get(Word::AccessType);
+    key.and_then(|key| Access::from_word(key.value))
         .unwrap_or_else(|| {
             findings.push(Finding {
                 rule: &rules::ACCESS_TYPE,
@@ -159,7 +150,7 @@ fn access(section: &Section, findings: &mut Vec<Finding>) -> Access {
         })
 }
 
-pub(super) fn repeated(section: &Section, first: usize) -> Finding {
+pub(super) fn repeated(section: Section<'_>, first: usize) -> Finding {
     Finding::losing(
         &rules::REPEATED_SECTION,
         section.line,

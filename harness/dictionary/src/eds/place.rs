@@ -9,8 +9,10 @@ pub(super) enum Place {
     Entry(u16, u8),
     /// `1003Name`: names of the entries of a compact object.
     Names(u16),
-    /// `1003Value`: values of the entries of a compact object.
+    /// `1003Value`: values of the entries of a compact object, in a DCF.
     Values(u16),
+    /// `1003Denotation`: what the entries of a compact object are called in one device.
+    Denotations(u16),
     /// `1003ObjectLinks`
     Links(u16),
 }
@@ -22,26 +24,27 @@ pub(super) fn place(name: &str) -> Option<Place> {
     if rest.is_empty() {
         return Some(Place::Object(index));
     }
-    for (word, place) in [
+    if let (Some(word), Some(sub)) = (rest.get(..3), rest.get(3..))
+        && word.eq_ignore_ascii_case("sub")
+    {
+        let sub = u8::try_from(hexadecimal(sub.trim())?).ok()?;
+        return Some(Place::Entry(index, sub));
+    }
+    let words = [
         ("Name", Place::Names(index)),
         ("Value", Place::Values(index)),
+        ("Denotation", Place::Denotations(index)),
         ("ObjectLinks", Place::Links(index)),
-    ] {
-        if rest.eq_ignore_ascii_case(word) {
-            return Some(place);
-        }
-    }
-    let sub = rest
-        .get(..3)
-        .filter(|word| word.eq_ignore_ascii_case("sub"))
-        .and_then(|_| rest.get(3..))?;
-    let sub = u8::try_from(hexadecimal(sub.trim())?).ok()?;
-    Some(Place::Entry(index, sub))
+    ];
+    let mut words = words.into_iter();
+    words
+        .find(|(word, _)| rest.eq_ignore_ascii_case(word))
+        .map(|(_, place)| place)
 }
 
 fn hexadecimal(digits: &str) -> Option<u16> {
-    digits
-        .bytes()
-        .all(|digit| digit.is_ascii_hexdigit())
-        .then(|| u16::from_str_radix(digits, 16).ok())?
+    match digits.starts_with('+') {
+        true => None,
+        false => u16::from_str_radix(digits, 16).ok(),
+    }
 }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::finding::Finding;
-use super::{Eds, Section, device_info, objects, rules};
-use crate::ini;
+use super::place::{Place, place};
+use super::{Eds, Section, commissioning, compact, device_info, objects, rules};
+use crate::ini::{self, Sections};
 
 /// The text of a file: UTF-8 if it is that, else ISO 8859-1, in which every byte is a character.
 pub fn decode(bytes: &[u8]) -> String {
@@ -31,22 +32,26 @@ pub fn read(text: &str) -> Eds {
     repeated_keys(&sections, &mut findings);
     repeated_sections(&sections, &mut findings);
     let device_info = device_info::read(&sections, &mut findings);
-    let dictionary = objects::read(&sections, &mut findings);
+    let commissioning = commissioning::read(&sections, &mut findings);
+    let mut objects = objects::read(&sections, &mut findings);
+    compact::apply_lists(&sections, &mut objects, &mut findings);
+    compact::add_pdos(&sections, &device_info, &mut objects);
     findings.sort_by_key(|finding| finding.line);
     Eds {
-        dictionary,
+        dictionary: objects.into_values().collect(),
         device_info,
+        commissioning,
         findings,
-        sections,
         strays,
+        sections,
     }
 }
 
 /// Objects and entries are looked at where they are read.
-fn repeated_sections(sections: &[Section], findings: &mut Vec<Finding>) {
+fn repeated_sections(sections: &Sections, findings: &mut Vec<Finding>) {
     let mut names: BTreeMap<String, usize> = BTreeMap::new();
-    for section in sections {
-        if super::place::place(&section.name).is_some() {
+    for section in sections.iter() {
+        if let Some(Place::Object(_) | Place::Entry(..)) = place(section.name) {
             continue;
         }
         let name = section.name.to_ascii_lowercase();
@@ -57,10 +62,10 @@ fn repeated_sections(sections: &[Section], findings: &mut Vec<Finding>) {
     }
 }
 
-fn repeated_keys(sections: &[Section], findings: &mut Vec<Finding>) {
-    for section in sections.iter().filter(|section| may_repeat(section)) {
+fn repeated_keys(sections: &Sections, findings: &mut Vec<Finding>) {
+    for section in sections.iter().filter(|section| may_repeat(*section)) {
         let mut lines = BTreeMap::new();
-        for key in &section.keys {
+        for key in section.keys() {
             let name = key.name.to_ascii_lowercase();
             let first = *lines.entry(name).or_insert(key.line);
             if first != key.line {
@@ -76,11 +81,12 @@ fn repeated_keys(sections: &[Section], findings: &mut Vec<Finding>) {
 }
 
 /// Few sections repeat a key, and most are so short that comparing all pairs is quicker than a map.
-fn may_repeat(section: &Section) -> bool {
+fn may_repeat(section: Section<'_>) -> bool {
     const SHORT: usize = 16;
-    section.keys.len() > SHORT
-        || section.keys.iter().enumerate().any(|(at, key)| {
-            let mut before = section.keys.iter().take(at);
-            before.any(|before| before.name.eq_ignore_ascii_case(&key.name))
+    let keys = section.keys();
+    keys.len() > SHORT
+        || keys.clone().enumerate().any(|(at, key)| {
+            let mut before = keys.clone().take(at);
+            before.any(|before| before.name.eq_ignore_ascii_case(key.name))
         })
 }

@@ -35,6 +35,7 @@ rules! {
     ORPHAN "E006" Error "a sub-index belongs to an object with a section";
     FLAG "E007" Warning "a flag is 0 or 1";
     KEY_WITH_BLANKS "E008" Warning "the name of a key has no blanks";
+    COMPACT_LIST "E009" Warning "a list of names or values is about compact sub-indices";
 
     MISSING_SECTION "E010" Error "the file has its mandatory sections";
     UNKNOWN_SECTION "E011" Note "a section is one of CiA 306";
@@ -55,6 +56,8 @@ rules! {
     NOT_LISTED "E025" Error "an object is listed";
     MISSING_LIST "E026" Error "there is a list for every area with objects";
     LISTED_TWICE "E027" Warning "an object is listed once";
+    MODULE "E028" Warning "a supported module is described";
+    CHANGED_BEFORE_MADE "E029" Warning "a file is not changed before it is made";
 
     NAME_MISSING "E030" Error "an object has a name";
     NAME_SEMICOLON "E031" Warning "a name does not end in a semicolon";
@@ -69,6 +72,11 @@ rules! {
     STANDARD_TYPE "E040" Error "an object of a standard has the data type of that standard";
     OBJECT_LINK "E041" Warning "an object link names an object";
     RESERVED_SUB "E042" Warning "a reserved sub-index is not described";
+    OBJ_FLAGS "E043" Warning "ObjFlags has two bits";
+    COMPACT_KIND "E044" Error "only arrays and records are compact";
+    LIST_OF_OBJECT "E045" Warning "a list about an object has as many entries as it says";
+    SUB_FF "E046" Error "sub-index FFh is UNSIGNED32 and read only";
+    LSS_ADDRESS "E047" Warning "a device with LSS has all four numbers of 1018h";
 
     LIMIT_NOT_OF_TYPE "E050" Error "a limit fits its data type";
     LIMITS_CROSSED "E051" Error "the low limit is not above the high limit";
@@ -79,6 +87,7 @@ rules! {
     TRANSMISSION_TYPE "E056" Error "a transmission type is not a reserved one";
     CYCLE_PERIOD "E057" Warning "a communication cycle is longer than a SYNC message";
     LIMIT_OF_TEXT "E058" Warning "only numbers have limits";
+    CHARACTERS "E059" Warning "a default has the characters of its type";
 
     MAPPED_MISSING "E060" Error "a mapped object exists";
     NOT_MAPPABLE "E061" Error "a mapped object has PDOMapping=1";
@@ -91,7 +100,31 @@ rules! {
     GRANULARITY "E068" Error "Granularity is 0 where mappings are fixed";
     PDO_PAIR "E069" Error "a PDO has communication and mapping parameters";
     PDO_COUNT "E070" Error "the number of PDOs is that of their sections";
+    MAPPED_STRING "E071" Warning "a mapped string is not longer than its mapping";
+    DUMMY_USAGE "E072" Warning "a dummy is a data type and 0 or 1";
 
     RESTRICTED_COB_ID "E080" Error "a COB-ID is not a restricted CAN-ID";
     SAME_FOR_EVERY_NODE "E081" Warning "a COB-ID of one node has $NODEID";
+    COB_ID_TWICE "E082" Warning "a COB-ID is used once in a device";
+    DEFAULT_SDO "E083" Error "the default SDO has 600h and 580h plus the node-ID";
+    SDO_CHANNEL "E084" Error "an SDO has two COB-IDs";
+
+    FILE_NAME "E085" Warning "the file is called as it says";
+    MISSPELT "E086" Note "the words of a name are free of slips";
+
+    SDO_NODE "E087" Error "the node at the other end of an SDO is 1 to 127";
+    HEARTBEAT_TWICE "E088" Warning "the heartbeat of a node is monitored once";
+
+    NOT_IN_EDS "E090" Warning "an object of the manual is in the EDS";
+    NOT_IN_MANUAL "E091" Note "an object of the EDS is in the manual";
+    MANUAL_TYPE "E092" Warning "a data type is that of the manual";
+    MANUAL_ACCESS "E093" Warning "an access type is that of the manual";
+    MANUAL_DEFAULT "E094" Warning "a default is that of the manual";
+    DEFAULT_IN_MANUAL_ALONE "E095" Note "a default of the manual is in the EDS";
+    NOT_SUPPORTED "E096" Warning "the manual says that the device has what the EDS describes";
+
+    NODE_OF_DEVICE "E100" Error "the node-ID of a device is 1 to 127";
+    BIT_RATE_OF_DEVICE "E101" Error "the bit rate of a device is one that it has";
+    NAME_OF_NODE "E102" Warning "a node has a name of at most 246 characters";
+    VALUE_OUTSIDE "E103" Error "a parameter value is inside its limits";
 }

@@ -2,40 +2,23 @@
 
 use std::fmt::Write;
 
+use super::Eds;
+use super::object_keys::Word;
+use super::objects::has_value;
 use super::place::{Place, place};
-use super::{Eds, Key, Section};
-use crate::{DataType, Default, Entry, Number, Object, ObjectKind};
+use crate::{DataType, Default, Entry, Number, Object};
 
 const LISTS: [&str; 3] = ["MandatoryObjects", "OptionalObjects", "ManufacturerObjects"];
-
-/// Keys that are written from the dictionary.
-const TYPED: [&str; 10] = [
-    "ParameterName",
-    "ObjectType",
-    "SubNumber",
-    "CompactSubObj",
-    "DataType",
-    "AccessType",
-    "LowLimit",
-    "HighLimit",
-    "DefaultValue",
-    "PDOMapping",
-];
 
 /// An EDS file that reads to the same dictionary. Sections and keys that are not about the dictionary are written as
 /// they were read; what is compact becomes long, and comments are not kept.
 pub fn write(eds: &Eds) -> String {
     let mut text = String::new();
-    for section in eds
-        .sections
-        .iter()
-        .filter(|section| is_copied(&section.name))
-    {
-        head(&mut text, &section.name);
-        section
-            .keys
-            .iter()
-            .for_each(|key| line(&mut text, &key.name, &key.value));
+    for section in eds.sections().filter(|section| is_copied(section.name)) {
+        head(&mut text, section.name);
+        for key in section.keys() {
+            line(&mut text, key.name, key.value);
+        }
     }
     for (at, list) in LISTS.iter().enumerate() {
         let indices: Vec<u16> = eds
@@ -76,22 +59,16 @@ fn list_of(index: u16) -> Option<usize> {
 }
 
 fn write_object(text: &mut String, eds: &Eds, object: &Object) {
-    let own = [
-        ObjectKind::Variable,
-        ObjectKind::Domain,
-        ObjectKind::DefType,
-    ]
-    .contains(&object.kind);
     head(text, &format!("{:04X}", object.index));
     line(text, "ParameterName", &object.name);
     line(text, "ObjectType", &format!("0x{:X}", object.kind.code()));
-    let value = object.entries.get(&0).filter(|_| own);
+    let value = object.entries.get(&0).filter(|_| has_value(object.kind));
     match value {
         Some(entry) => write_entry(text, entry),
         None => line(text, "SubNumber", &object.entries.len().to_string()),
     }
     extras(text, eds, object.line, Place::Object(object.index));
-    for (sub, entry) in &object.entries {
+    for (sub, entry) in object.entries.iter() {
         // The name of a single value is that of its object, unless it has a section of its own.
         if *sub == 0 && value.is_some_and(|entry| entry.name == object.name) {
             continue;
@@ -121,12 +98,18 @@ fn write_entry(text: &mut String, entry: &Entry) {
             line(text, name, &number(limit, entry.data_type));
         }
     }
-    match &entry.default {
-        Some(Default::Number(value)) => {
-            line(text, "DefaultValue", &number(*value, entry.data_type))
+    for (name, value) in [
+        ("DefaultValue", &entry.default),
+        ("ParameterValue", &entry.parameter_value),
+    ] {
+        match value {
+            Some(Default::Number(value)) => line(text, name, &number(*value, entry.data_type)),
+            Some(Default::Text(value)) => line(text, name, value),
+            None => {}
         }
-        Some(Default::Text(value)) => line(text, "DefaultValue", value),
-        None => {}
+    }
+    if let Some(denotation) = &entry.denotation {
+        line(text, "Denotation", denotation);
     }
     line(
         text,
@@ -147,15 +130,31 @@ fn number(number: Number, data_type: DataType) -> String {
     }
 }
 
-/// Keys that nobody here has a type for, from the section that was read for `wanted`.
+/// The keys of the section that was read for `wanted` that are not written from the dictionary.
 fn extras(text: &mut String, eds: &Eds, from: usize, wanted: Place) {
     let section = eds
         .section_at(from)
-        .filter(|section| place(&section.name) == Some(wanted));
-    let untyped = |key: &&Key| !TYPED.iter().any(|typed| key.is(typed));
-    let keys = section.map_or(&[][..], |section: &Section| &section.keys);
-    for key in keys.iter().filter(untyped) {
-        line(text, &key.name, &key.value);
+        .filter(|section| place(section.name) == Some(wanted));
+    let Some(section) = section else { return };
+    // Where the entries have sections of their own, nothing is read from what this one says of a value.
+    let head = match wanted {
+        Place::Object(index) => eds.dictionary.object(index).is_some_and(|object| {
+            let mut entries = object.entries.values();
+            entries.all(|entry| entry.line != from)
+        }),
+        _ => false,
+    };
+    for key in section.keys() {
+        let written = match Word::of(key) {
+            None | Some(Word::ObjFlags) => false,
+            Some(
+                Word::ParameterName | Word::ObjectType | Word::SubNumber | Word::CompactSubObj,
+            ) => true,
+            Some(_) => !head,
+        };
+        if !written {
+            line(text, key.name, key.value);
+        }
     }
 }
 

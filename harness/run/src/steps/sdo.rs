@@ -9,7 +9,7 @@ use crate::modbus::show_bytes;
 use crate::sdo::{Outcome, show_abort};
 use crate::stop::{Came, Stop};
 use crate::tester::{Tester, multiplexer};
-use crate::value::{Actual, Saved, decode, encode, resolve, size};
+use crate::value::{Actual, decode, encode, resolve, size};
 
 impl Tester<'_> {
     pub(super) fn sdo_read(&mut self, step: &SdoRead) -> Result<(), Stop> {
@@ -36,7 +36,7 @@ impl Tester<'_> {
                 came(&actual),
             ));
         }
-        check_read(object, &step.expect, &actual, &self.saved)?;
+        self.check_read(object, &step.expect, &actual)?;
         if let Some(words) = &step.observe {
             self.observe(words, actual.to_string());
         }
@@ -129,53 +129,70 @@ impl Tester<'_> {
             .collect();
         format!("abort {}", codes.join(" or "))
     }
+
+    fn check_read(
+        &self,
+        object: Multiplexer,
+        expect: &ReadExpectation,
+        actual: &Actual,
+    ) -> Result<(), Stop> {
+        let saved = &self.saved;
+        let wrong = |expected: String| {
+            Err(Stop::mismatch(
+                format!("{object} holds another value"),
+                expected,
+                actual.to_string(),
+                came(actual),
+            ))
+        };
+        match expect {
+            ReadExpectation::Any | ReadExpectation::Abort(_) => Ok(()),
+            ReadExpectation::Value(value) => {
+                let expected = resolve(value, None, saved)?;
+                if expected == *actual {
+                    Ok(())
+                } else {
+                    wrong(expected.to_string())
+                }
+            }
+            ReadExpectation::OneOf(values) => {
+                let expected: Vec<Actual> = values
+                    .iter()
+                    .map(|value| resolve(value, None, saved))
+                    .collect::<Result<_, _>>()?;
+                if expected.contains(actual) {
+                    return Ok(());
+                }
+                let names: Vec<String> = expected.iter().map(Actual::to_string).collect();
+                wrong(format!("one of {}", names.join(", ")))
+            }
+            ReadExpectation::Claimed(claim) => match self.device.identity.claimed(*claim) {
+                None => Err(Stop::Bench(format!(
+                    "the device claims no {}",
+                    claim.name()
+                ))),
+                Some(claimed) => {
+                    let expected = resolve(&claimed.value, None, saved)?;
+                    match expected == *actual {
+                        true => Ok(()),
+                        false => wrong(format!(
+                            "{expected}, the {} that the device claims",
+                            claim.name()
+                        )),
+                    }
+                }
+            },
+            ReadExpectation::Range { from, to } => match actual {
+                Actual::Number(number) if number >= from && number <= to => Ok(()),
+                _ => wrong(format!("{from} to {to}")),
+            },
+        }
+    }
 }
 
 fn came(actual: &Actual) -> Came {
     match actual {
         Actual::Number(number) => Came::Value(*number),
         Actual::Text(_) => Came::Answer,
-    }
-}
-
-fn check_read(
-    object: Multiplexer,
-    expect: &ReadExpectation,
-    actual: &Actual,
-    saved: &Saved,
-) -> Result<(), Stop> {
-    let wrong = |expected: String| {
-        Err(Stop::mismatch(
-            format!("{object} holds another value"),
-            expected,
-            actual.to_string(),
-            came(actual),
-        ))
-    };
-    match expect {
-        ReadExpectation::Any | ReadExpectation::Abort(_) => Ok(()),
-        ReadExpectation::Value(value) => {
-            let expected = resolve(value, None, saved)?;
-            if expected == *actual {
-                Ok(())
-            } else {
-                wrong(expected.to_string())
-            }
-        }
-        ReadExpectation::OneOf(values) => {
-            let expected: Vec<Actual> = values
-                .iter()
-                .map(|value| resolve(value, None, saved))
-                .collect::<Result<_, _>>()?;
-            if expected.contains(actual) {
-                return Ok(());
-            }
-            let names: Vec<String> = expected.iter().map(Actual::to_string).collect();
-            wrong(format!("one of {}", names.join(", ")))
-        }
-        ReadExpectation::Range { from, to } => match actual {
-            Actual::Number(number) if number >= from && number <= to => Ok(()),
-            _ => wrong(format!("{from} to {to}")),
-        },
     }
 }

@@ -291,6 +291,7 @@ impl Setup {
             device: "scripted".into(),
             title: "A scripted device".into(),
             sources: BTreeMap::new(),
+            identity: fieldproof_suite::identity::Identity::default(),
             ports: [(
                 "can".to_owned(),
                 PortDescription::Can { bit_rate: BIT_RATE },

@@ -13,6 +13,7 @@ use crate::device::{
 };
 use crate::file::ModbusException;
 use crate::forms::{Either, OneOrMany};
+use crate::identity::Identity;
 use crate::model::{Effect, Located, Source};
 use crate::problem::Wrong;
 use crate::read_with::time;
@@ -33,6 +34,9 @@ pub(crate) struct DeviceFile {
     /// Documents it cites.
     #[serde(default)]
     pub(crate) sources: BTreeMap<String, Source>,
+    /// Who it claims to be; what is not claimed is not asserted.
+    #[serde(default)]
+    pub(crate) identity: Identity,
     /// Its ports by role.
     pub(crate) ports: Located<BTreeMap<String, PortFile>>,
     /// The CANopen side.

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::value::{RawValue, counts};
 use crate::code;
 use crate::forms::{Either, OneOrMany, TwoForms};
+use crate::identity::Claim;
 use crate::model::{
     AbortExpectation, Located, ReadExpectation, SdoRead, SdoWrite, ValueType, WriteExpectation,
 };
@@ -66,7 +67,7 @@ impl TwoForms for ReadExpectFile {
     }
 }
 
-/// What a read must give, beside one value: one of several, a range, or a refusal.
+/// What a read must give, beside one value: one of several, a range, what is claimed, or a refusal.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(rename = "ReadExpectation")]
@@ -80,6 +81,9 @@ pub(crate) struct ReadExpectMap {
     /// The highest that passes.
     #[serde(default)]
     to: Option<Located<RawValue>>,
+    /// What the description claims of the identity; the case is skipped where it claims nothing.
+    #[serde(default)]
+    claimed: Option<Located<Claim>>,
     /// The abort codes that pass.
     #[serde(default)]
     abort: Option<OneOrMany<u32>>,
@@ -114,6 +118,13 @@ impl ReadExpectFile {
             ReadExpectFile::Value(value) => return in_counts(&value).map(ReadExpectation::Value),
             ReadExpectFile::Map(map) => map,
         };
+        if let Some(claim) = map.claimed {
+            let alone = map.one_of.is_none() && map.from.is_none() && map.to.is_none();
+            if alone && map.abort.is_none() && map.strict.is_none() {
+                return claimed(&claim, value_type).map(ReadExpectation::Claimed);
+            }
+            return Err(not_one_expectation());
+        }
         match (map.one_of, map.from, map.to, map.abort, map.strict) {
             (Some(values), None, None, None, None) if !values.is_empty() => values
                 .iter()
@@ -134,13 +145,38 @@ impl ReadExpectFile {
             (None, None, None, Some(abort), strict) => {
                 refusal(abort, strict).map(ReadExpectation::Abort)
             }
-            _ => Err(Wrong::new(
-                code::KEYS_TOGETHER,
-                "this is not one expectation",
-                "expected `one-of`, or `from` and `to`, or `abort` with `strict` if need be",
-            )),
+            _ => Err(not_one_expectation()),
         }
     }
+}
+
+fn not_one_expectation() -> Wrong {
+    Wrong::new(
+        code::KEYS_TOGETHER,
+        "this is not one expectation",
+        "expected `one-of`, or `from` and `to`, or `claimed`, or `abort` with `strict` if need be",
+    )
+}
+
+fn claimed(claim: &Located<Claim>, value_type: ValueType) -> Result<Claim, Wrong> {
+    let expected = match claim.value.is_text() {
+        true => ValueType::Text,
+        false => ValueType::U32,
+    };
+    if value_type == expected {
+        return Ok(claim.value);
+    }
+    Err(Wrong::new(
+        code::KEYS_TOGETHER,
+        format!(
+            "`{}` is read as `{}`, not as `{}`",
+            claim.value.name(),
+            expected.word(),
+            value_type.word()
+        ),
+        "of another type",
+    )
+    .at(claim.at))
 }
 
 fn refusal(abort: OneOrMany<u32>, strict: Option<u32>) -> Result<AbortExpectation, Wrong> {

@@ -96,7 +96,7 @@ fn fits(number: i128, low: i128, high: i128, value_type: ValueType) -> Result<i1
 
 impl ValueType {
     /// As it is written after `as`.
-    fn word(self) -> &'static str {
+    pub(super) fn word(self) -> &'static str {
         match self {
             ValueType::U8 => "u8",
             ValueType::U16 => "u16",

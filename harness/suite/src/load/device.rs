@@ -111,6 +111,7 @@ fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<DeviceDescription> {
         language: file.language,
         device: file.device.value,
         title: file.title,
+        identity: file.identity,
         ports,
         canopen: file.canopen.map(|side| side.value),
         modbus: file.modbus.map(|side| side.value),

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::ValueType;
 use crate::file::{SdoReadFile, SdoWriteFile};
+use crate::identity::Claim;
 use crate::scalar::{ObjectAddress, Value};
 
 /// Reads an object.
@@ -45,6 +46,8 @@ pub enum ReadExpectation {
         /// Upper limit.
         to: i128,
     },
+    /// What the description claims: `expect: {claimed: vendor-id}`. A case is skipped where nothing is claimed.
+    Claimed(Claim),
     /// `expect: {abort: [0x06010002, 0x06010000], strict: 0x06010002}`
     Abort(AbortExpectation),
 }

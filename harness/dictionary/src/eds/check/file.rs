@@ -33,9 +33,11 @@ const DEVICE_KEYS: [&str; 13] = [
     "LSS_Supported",
 ];
 
+const COMMISSIONING_KEYS: [&str; 3] = ["NodeID", "NodeName", "Baudrate"];
+
 const BIT_RATES: [&str; 8] = ["10", "20", "50", "125", "250", "500", "800", "1000"];
 
-const SECTIONS: [&str; 12] = [
+const SECTIONS: [&str; 13] = [
     "FileInfo",
     "DeviceInfo",
     "DummyUsage",
@@ -47,6 +49,7 @@ const SECTIONS: [&str; 12] = [
     "DynamicChannels",
     "Tools",
     "SupportedModules",
+    "ConnectedModules",
     "DeviceComissioning",
 ];
 
@@ -55,13 +58,19 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     mandatory(eds, "DeviceInfo", &DEVICE_KEYS, findings);
     if let Some(section) = eds.section("FileInfo") {
         dates_and_times(section, findings);
+        order_of_dates(section, findings);
+    }
+    for name in ["DeviceComissioning", "DeviceCommissioning"] {
+        if eds.section(name).is_some() {
+            mandatory(eds, name, &COMMISSIONING_KEYS, findings);
+        }
     }
     if let Some(section) = eds.section("DeviceInfo") {
         bit_rates(eds, section, findings);
         identity(eds, section, findings);
         dynamic_channels(eds, section, findings);
     }
-    for section in &eds.sections {
+    for section in eds.sections() {
         names(section, findings);
     }
 }
@@ -88,18 +97,18 @@ fn mandatory(eds: &Eds, name: &str, keys: &[&str], findings: &mut Vec<Finding>) 
     }
 }
 
-fn dates_and_times(section: &Section, findings: &mut Vec<Finding>) {
-    for key in section.keys.iter().filter(|key| !key.value.is_empty()) {
+fn dates_and_times(section: Section<'_>, findings: &mut Vec<Finding>) {
+    for key in section.keys().filter(|key| !key.value.is_empty()) {
         let (rule, right, wanted) = if key.is("CreationDate") || key.is("ModificationDate") {
             (
                 &rules::DATE,
-                is_date(&key.value),
+                date(key.value).is_some(),
                 "mm-dd-yyyy, as in 10-23-2012",
             )
         } else if key.is("CreationTime") || key.is("ModificationTime") {
             (
                 &rules::TIME,
-                is_time(&key.value),
+                is_time(key.value),
                 "hh:mm and AM or PM without a blank, as in 11:04AM",
             )
         } else {
@@ -116,11 +125,30 @@ fn dates_and_times(section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn is_date(text: &str) -> bool {
+fn order_of_dates(section: Section<'_>, findings: &mut Vec<Finding>) {
+    let date = |name: &str| {
+        let key = section.filled(name)?;
+        Some((date(key.value)?, key))
+    };
+    if let (Some((made, _)), Some((changed, key))) =
+        (date("CreationDate"), date("ModificationDate"))
+        && changed < made
+    {
+        findings.push(Finding::new(
+            &rules::CHANGED_BEFORE_MADE,
+            key.line,
+            format!("`{}={}` is before CreationDate", key.name, key.value),
+            "write month, day and year in both",
+        ));
+    }
+}
+
+/// Year, month and day.
+fn date(text: &str) -> Option<(u32, u32, u32)> {
     let parts: Vec<Option<u32>> = text.split('-').map(digits).collect();
     let lengths: Vec<usize> = text.split('-').map(str::len).collect();
     let [Some(month @ 1..=12), Some(day), Some(year)] = parts[..] else {
-        return false;
+        return None;
     };
     let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let last = match month {
@@ -129,7 +157,7 @@ fn is_date(text: &str) -> bool {
         4 | 6 | 9 | 11 => 30,
         _ => 31,
     };
-    lengths == [2, 2, 4] && (1..=last).contains(&day)
+    (lengths == [2, 2, 4] && (1..=last).contains(&day)).then_some((year, month, day))
 }
 
 fn is_time(text: &str) -> bool {
@@ -154,9 +182,9 @@ fn digits(text: &str) -> Option<u32> {
     all.then(|| text.parse().ok())?
 }
 
-fn bit_rates(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
+fn bit_rates(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
     const PREFIX: &str = "BaudRate_";
-    for key in &section.keys {
+    for key in section.keys() {
         let Some(prefix) = key.name.get(..PREFIX.len()) else {
             continue;
         };
@@ -183,7 +211,7 @@ fn bit_rates(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn identity(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
+fn identity(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
     let info = &eds.device_info;
     for (sub, name, said) in [
         (1, "VendorNumber", info.vendor_number),
@@ -206,12 +234,12 @@ fn identity(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn dynamic_channels(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
+fn dynamic_channels(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
     let claimed = eds.device_info.dynamic_channels_supported.unwrap_or(0);
     let described = eds
         .section("DynamicChannels")
         .and_then(|section| section.key("NrOfSeg"))
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .map_or(0, |count| count.value);
     let key = section.key("DynamicChannelsSupported");
     let line = key.map_or(section.line, |key| key.line);
@@ -234,7 +262,7 @@ fn dynamic_channels(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn names(section: &Section, findings: &mut Vec<Finding>) {
+fn names(section: Section<'_>, findings: &mut Vec<Finding>) {
     if section.is("DeviceCommissioning") {
         findings.push(Finding::new(
             &rules::SPELLING,
@@ -242,7 +270,7 @@ fn names(section: &Section, findings: &mut Vec<Finding>) {
             "[DeviceCommissioning] has one m in CiA 306",
             "write [DeviceComissioning]",
         ));
-    } else if !is_known(&section.name) {
+    } else if !is_known(section.name) {
         findings.push(Finding::new(
             &rules::UNKNOWN_SECTION,
             section.line,
@@ -250,7 +278,7 @@ fn names(section: &Section, findings: &mut Vec<Finding>) {
             "it is kept and not looked into",
         ));
     }
-    for key in &section.keys {
+    for key in section.keys() {
         blanks(section, key, findings);
     }
 }
@@ -269,8 +297,8 @@ fn is_known(name: &str) -> bool {
         || numbered("m")
 }
 
-fn blanks(section: &Section, key: &Key, findings: &mut Vec<Finding>) {
-    if key.name.contains(char::is_whitespace) {
+fn blanks(section: Section<'_>, key: Key<'_>, findings: &mut Vec<Finding>) {
+    if key.has_blanks() {
         findings.push(Finding::new(
             &rules::KEY_WITH_BLANKS,
             key.line,

@@ -47,6 +47,7 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     for object in eds.dictionary.objects() {
         if let Some(list) = list_of(object.index)
             && !listed.contains_key(&object.index)
+            && !super::is_implied(eds, object)
         {
             findings.push(Finding::new(
                 &rules::NOT_LISTED,
@@ -59,8 +60,10 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
 }
 
 fn missing(eds: &Eds, name: &str, findings: &mut Vec<Finding>) {
-    let mut objects = eds.dictionary.objects();
-    let first = objects.find(|object| list_of(object.index) == Some(name));
+    let first = eds
+        .dictionary
+        .objects()
+        .find(|object| list_of(object.index) == Some(name) && !super::is_implied(eds, object));
     let what = match first {
         Some(object) => format!(
             "[{name}] is missing, but [{:04X}] belongs there",
@@ -78,17 +81,17 @@ fn missing(eds: &Eds, name: &str, findings: &mut Vec<Finding>) {
 }
 
 /// The indices of a list with their lines.
-fn indices(section: &Section, findings: &mut Vec<Finding>) -> Vec<(u16, usize)> {
+fn indices(section: Section<'_>, findings: &mut Vec<Finding>) -> Vec<(u16, usize)> {
     let mut indices = Vec::new();
     let mut numbers = BTreeSet::new();
     let mut entries = 0;
-    for key in &section.keys {
+    for key in section.keys() {
         let Ok(number) = key.name.parse::<u32>() else {
             continue;
         };
         entries += 1;
         numbers.insert(number);
-        match Integer::parse(&key.value).and_then(|number| u16::try_from(number.value).ok()) {
+        match Integer::parse(key.value).and_then(|number| u16::try_from(number.value).ok()) {
             Some(index) => indices.push((index, key.line)),
             None => findings.push(Finding::losing(
                 &rules::LIST_ENTRY,
@@ -102,9 +105,14 @@ fn indices(section: &Section, findings: &mut Vec<Finding>) -> Vec<(u16, usize)> 
     indices
 }
 
-fn count(section: &Section, entries: i128, numbers: &BTreeSet<u32>, findings: &mut Vec<Finding>) {
+fn count(
+    section: Section<'_>,
+    entries: i128,
+    numbers: &BTreeSet<u32>,
+    findings: &mut Vec<Finding>,
+) {
     let key = section.key("SupportedObjects");
-    let said = key.and_then(|key| Integer::parse(&key.value));
+    let said = key.and_then(|key| Integer::parse(key.value));
     let line = key.map_or(section.line, |key| key.line);
     let text = match (said, key) {
         (Some(said), _) if said.value == entries => {

@@ -1,12 +1,19 @@
 //! The checker: holds a file against CiA 306, CiA 301 and itself.
 
 mod cob_ids;
+mod commissioning;
 mod file;
+mod file_name;
 mod lists;
+mod modules;
 mod objects;
 mod pdos;
+mod sdos;
 mod standard;
 mod values;
+mod words;
+
+pub use file_name::check_file_name;
 
 use super::{Eds, Finding};
 use crate::{Dictionary, Object};
@@ -20,6 +27,10 @@ pub fn check(eds: &Eds) -> Vec<Finding> {
     values::check(eds, &mut findings);
     pdos::check(eds, &mut findings);
     cob_ids::check(eds, &mut findings);
+    sdos::check(eds, &mut findings);
+    modules::check(eds, &mut findings);
+    commissioning::check(eds, &mut findings);
+    words::check(eds, &mut findings);
     findings.sort_by_key(|finding| (finding.line, finding.rule.code));
     findings
 }
@@ -41,6 +52,15 @@ fn section_of(object: &Object, sub: u8) -> String {
         true => format!("[{:04X}sub{sub:X}]", object.index),
         false => format!("[{:04X}]", object.index),
     }
+}
+
+/// Whether it has no section, for `CompactPDO` describes it.
+fn is_implied(eds: &Eds, object: &Object) -> bool {
+    let compact = eds.device_info.compact_pdo.unwrap_or(0) > 0;
+    compact
+        && eds
+            .section_at(object.line)
+            .is_some_and(|section| section.is("DeviceInfo"))
 }
 
 /// Whether its entries are described in sections of their own.

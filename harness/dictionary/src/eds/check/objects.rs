@@ -1,40 +1,85 @@
 //! The sections of objects: names, types, sub-indices.
 
+use super::super::object_keys::{ObjectKeys, Word};
 use super::super::place::{Place, place};
 use super::super::{Eds, Finding, Section, rules};
-use super::{at, has_sections, section_of, standard};
+use super::{at, has_sections, section_of, standard, values};
 use crate::integer::Integer;
 use crate::{DataType, Entry, Object, ObjectKind};
 
 pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
-    for section in &eds.sections {
-        match place(&section.name) {
-            Some(Place::Object(_) | Place::Entry(..)) => {
-                name(section, findings);
-                object_type(section, findings);
+    for section in eds.sections() {
+        match place(section.name) {
+            Some(place @ (Place::Object(_) | Place::Entry(..))) => {
+                let keys = ObjectKeys::of(section);
+                name(section, &keys, findings);
+                object_type(section, place, &keys, findings);
+                flags(&keys, findings);
+                values::spelling(eds, section, place, &keys, findings);
             }
-            Some(Place::Links(_)) => links(eds, section, findings),
-            _ => {}
+            Some(Place::Links(_)) => {
+                links(eds, section, findings);
+                list_of_object(section, "ObjectLinks", findings);
+            }
+            Some(Place::Names(_) | Place::Values(_) | Place::Denotations(_)) => {
+                list_of_object(section, "NrOfEntries", findings);
+            }
+            None => {}
         }
     }
     let profile = standard::profile(&eds.dictionary);
     for object in eds.dictionary.objects() {
+        if super::is_implied(eds, object) {
+            continue;
+        }
         match has_sections(object) {
             true => structure(eds, object, findings),
-            false => single(object, findings),
+            false => single(eds, object, findings),
         }
-        for (sub, entry) in &object.entries {
+        for (sub, entry) in object.entries.iter() {
             data_type(eds, object, *sub, entry, profile, findings);
         }
         reserved(object, findings);
+        special_subs(eds, object, findings);
     }
 }
 
-fn name(section: &Section, findings: &mut Vec<Finding>) {
-    let Some(key) = section
-        .key("ParameterName")
-        .filter(|key| !key.value.is_empty())
-    else {
+fn flags(keys: &ObjectKeys<'_>, findings: &mut Vec<Finding>) {
+    if let Some(key) = keys.get(Word::ObjFlags)
+        && Integer::parse(key.value).is_none_or(|flags| !matches!(flags.value, 0..=3))
+    {
+        findings.push(Finding::new(
+            &rules::OBJ_FLAGS,
+            key.line,
+            format!("`{}={}` has other bits than 0 and 1", key.name, key.value),
+            "write 0, or the sum of 1 (not to be written by a tool) and 2 (not to be read)",
+        ));
+    }
+}
+
+/// The count of a list against its numbered keys.
+fn list_of_object(section: Section<'_>, count: &str, findings: &mut Vec<Finding>) {
+    let key = section.filled(count);
+    let said = key.and_then(|key| Integer::parse(key.value));
+    let present = section
+        .keys()
+        .filter(|key| key.name.parse::<u32>().is_ok())
+        .count();
+    if said.and_then(|said| usize::try_from(said.value).ok()) != Some(present) {
+        findings.push(Finding::new(
+            &rules::LIST_OF_OBJECT,
+            key.map_or(section.line, |key| key.line),
+            format!(
+                "[{}] has {present} entries and says otherwise",
+                section.name
+            ),
+            format!("write {count}={present}"),
+        ));
+    }
+}
+
+fn name(section: Section<'_>, keys: &ObjectKeys<'_>, findings: &mut Vec<Finding>) {
+    let Some(key) = keys.get(Word::ParameterName) else {
         findings.push(Finding::new(
             &rules::NAME_MISSING,
             section.line,
@@ -61,19 +106,21 @@ fn name(section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn object_type(section: &Section, findings: &mut Vec<Finding>) {
+fn object_type(
+    section: Section<'_>,
+    place: Place,
+    keys: &ObjectKeys<'_>,
+    findings: &mut Vec<Finding>,
+) {
     // CiA 306 lets an entry without ObjectType be a variable.
-    let Some(key) = section
-        .key("ObjectType")
-        .filter(|key| !key.value.is_empty())
-    else {
+    let Some(key) = keys.get(Word::ObjectType) else {
         return;
     };
-    let Some(code) = Integer::parse(&key.value) else {
+    let Some(code) = Integer::parse(key.value) else {
         return;
     };
     let legal = matches!(code.value, 0 | 2 | 5..=9);
-    let entry = matches!(place(&section.name), Some(Place::Entry(..)));
+    let entry = matches!(place, Place::Entry(..));
     if !legal || (entry && !matches!(code.value, 0 | 2 | 5 | 7)) {
         findings.push(Finding::new(
             &rules::OBJECT_TYPE,
@@ -90,9 +137,9 @@ fn object_type(section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn links(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
-    for key in &section.keys {
-        let index = Integer::parse(&key.value).and_then(|number| u16::try_from(number.value).ok());
+fn links(eds: &Eds, section: Section<'_>, findings: &mut Vec<Finding>) {
+    for key in section.keys() {
+        let index = Integer::parse(key.value).and_then(|number| u16::try_from(number.value).ok());
         if key.name.parse::<u32>().is_ok()
             && index.is_none_or(|index| eds.dictionary.object(index).is_none())
         {
@@ -106,7 +153,17 @@ fn links(eds: &Eds, section: &Section, findings: &mut Vec<Finding>) {
     }
 }
 
-fn single(object: &Object, findings: &mut Vec<Finding>) {
+fn single(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
+    if let Some(key) = eds.key_at(object.line, "CompactSubObj")
+        && Integer::parse(key.value).is_some_and(|count| count.value > 0)
+    {
+        findings.push(Finding::new(
+            &rules::COMPACT_KIND,
+            key.line,
+            format!("[{:04X}] is compact, but no array or record", object.index),
+            "write ObjectType=8 or 9, or remove CompactSubObj",
+        ));
+    }
     if let Some((sub, entry)) = object.entries.iter().find(|(sub, _)| **sub > 0) {
         findings.push(Finding::new(
             &rules::OBJECT_TYPE,
@@ -123,7 +180,7 @@ fn single(object: &Object, findings: &mut Vec<Finding>) {
 fn structure(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
     let compact = eds
         .key_at(object.line, "CompactSubObj")
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .is_some_and(|count| count.value > 0);
     sub_number(eds, object, compact, findings);
     let Some(count) = object.entries.get(&0) else {
@@ -149,7 +206,7 @@ fn structure(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
 fn sub_number(eds: &Eds, object: &Object, compact: bool, findings: &mut Vec<Finding>) {
     let key = eds.key_at(object.line, "SubNumber");
     let said = key
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .map(|number| number.value);
     let present = object.entries.len();
     if compact {
@@ -247,6 +304,36 @@ fn data_type(
                 "write DataType={:#06X} if the device does as the standard says",
                 wanted.code()
             ),
+        ));
+    }
+}
+
+fn special_subs(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
+    let structure = object.entries.get(&0xFF).filter(|_| has_sections(object));
+    if let Some(entry) = structure
+        && (entry.data_type != DataType::Unsigned32 || entry.access.writable())
+    {
+        findings.push(Finding::new(
+            &rules::SUB_FF,
+            entry.line,
+            format!(
+                "{} is {:?} and {}",
+                at(object.index, 0xFF),
+                entry.data_type,
+                entry.access.word()
+            ),
+            "write DataType=0x0007 and AccessType=const, or ro",
+        ));
+    }
+    if object.index == 0x1018
+        && eds.device_info.lss_supported == Some(true)
+        && let Some(missing) = (1..=4).find(|sub| object.entries.get(sub).is_none())
+    {
+        findings.push(Finding::new(
+            &rules::LSS_ADDRESS,
+            object.line,
+            format!("the device has LSS, but no {}", at(0x1018, missing)),
+            "describe vendor, product, revision and serial number, or write LSS_Supported=0",
         ));
     }
 }

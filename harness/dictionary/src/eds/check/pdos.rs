@@ -22,7 +22,7 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
         {
             mapping(eds, object, direction, &mut received, findings);
         }
-        for (sub, entry) in &object.entries {
+        for (sub, entry) in object.entries.iter() {
             unclear(eds, object, *sub, entry, findings);
         }
     }
@@ -94,11 +94,11 @@ fn mapping(
         ));
     }
     let mut bits = 0;
-    for (sub, entry) in object
+    let used = object
         .entries
-        .range(1..=count.max(1))
-        .take(usize::from(count))
-    {
+        .iter()
+        .filter(|(sub, _)| (1..=count).contains(*sub));
+    for (sub, entry) in used {
         let line = eds.line_of(entry.line, "DefaultValue");
         let value = number(&eds.dictionary, object.index, *sub).and_then(Mapped::from_value);
         if let Some(mapped) = value.filter(|mapped| mapped.index != 0) {
@@ -162,6 +162,21 @@ fn target(
         ));
     }
     length(mapped, entry.data_type, line, findings);
+    let text = entry.data_type.is_text();
+    if let Some(default) = entry.default_bytes(1).filter(|_| text)
+        && default.len() * 8 > mapped.bits as usize
+    {
+        findings.push(Finding::new(
+            &rules::MAPPED_STRING,
+            line,
+            format!(
+                "{place} is mapped with {} bits, but its default has {} bytes",
+                mapped.bits,
+                default.len()
+            ),
+            "map as many bits as the string has, or shorten the default",
+        ));
+    }
 }
 
 fn goal(direction: Direction) -> &'static str {
@@ -200,7 +215,7 @@ fn dummy(
     let enabled = eds
         .section("DummyUsage")
         .and_then(|section| section.key(&name))
-        .and_then(|key| Integer::parse(&key.value))
+        .and_then(|key| Integer::parse(key.value))
         .is_some_and(|flag| flag.value == 1);
     if !enabled || direction == Direction::Transmit {
         findings.push(Finding::new(

@@ -1,14 +1,17 @@
 //! Defaults and limits, against their types and against each other.
 
-use super::super::{Eds, Finding, rules};
+use super::super::object_keys::{ObjectKeys, Word};
+use super::super::place::Place;
+use super::super::{Eds, Finding, Section, rules};
 use super::section_of;
+use crate::value::octets;
 use crate::{DataType, Default, Entry, Number, Object};
 
 pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     for object in eds.dictionary.objects() {
-        for (sub, entry) in &object.entries {
-            spelling(eds, entry, findings);
+        for (sub, entry) in object.entries.iter() {
             limits(eds, object, *sub, entry, findings);
+            characters(eds, object, *sub, entry, findings);
             if matches!(object.index, 0x1400..=0x15FF | 0x1800..=0x19FF) && *sub == 2 {
                 transmission_type(eds, entry, findings);
             }
@@ -17,18 +20,26 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
     cycle_period(eds, findings);
 }
 
-fn spelling(eds: &Eds, entry: &Entry, findings: &mut Vec<Finding>) {
-    if entry.data_type.is_text() {
-        return;
-    }
-    let Some(section) = eds.section_at(entry.line) else {
-        return;
-    };
-    for name in ["DefaultValue", "LowLimit", "HighLimit"] {
-        let Some(key) = section.key(name) else {
+/// How the numbers of an object or entry are written.
+pub(super) fn spelling(
+    eds: &Eds,
+    section: Section<'_>,
+    place: Place,
+    keys: &ObjectKeys<'_>,
+    findings: &mut Vec<Finding>,
+) {
+    let words = [
+        Word::DefaultValue,
+        Word::LowLimit,
+        Word::HighLimit,
+        Word::ParameterValue,
+    ];
+    for key in words.into_iter().filter_map(|word| keys.get(word)) {
+        let (prefix, node) = (key.value.contains("0X"), key.value.contains('$'));
+        if !(prefix || node) || is_text(eds, section, place) {
             continue;
-        };
-        if key.value.contains("0X") {
+        }
+        if prefix {
             findings.push(Finding::new(
                 &rules::UPPER_CASE_PREFIX,
                 key.line,
@@ -36,7 +47,7 @@ fn spelling(eds: &Eds, entry: &Entry, findings: &mut Vec<Finding>) {
                 "write 0x; other readers take the number for 0",
             ));
         }
-        if key.value.contains('$') && !is_usual(&key.value) {
+        if node && !is_usual(key.value) {
             findings.push(Finding::new(
                 &rules::NODE_ID,
                 key.line,
@@ -45,6 +56,19 @@ fn spelling(eds: &Eds, entry: &Entry, findings: &mut Vec<Finding>) {
             ));
         }
     }
+}
+
+/// Whether a section is that of a text, or of nothing that has a value.
+fn is_text(eds: &Eds, section: Section<'_>, place: Place) -> bool {
+    let entry = match place {
+        Place::Object(index) => eds.dictionary.object(index).and_then(|object| {
+            let mut entries = object.entries.values();
+            entries.rfind(|entry| entry.line == section.line)
+        }),
+        Place::Entry(index, sub) => eds.dictionary.entry(index, sub),
+        _ => None,
+    };
+    entry.is_none_or(|entry| entry.line != section.line || entry.data_type.is_text())
 }
 
 fn is_usual(text: &str) -> bool {
@@ -127,6 +151,36 @@ fn inside(eds: &Eds, object: &Object, sub: u8, entry: &Entry, findings: &mut Vec
                 section_of(object, sub)
             ),
             "correct the default or the limits",
+        ));
+    }
+}
+
+/// What a string can hold.
+fn characters(eds: &Eds, object: &Object, sub: u8, entry: &Entry, findings: &mut Vec<Finding>) {
+    let Some(Default::Text(text)) = &entry.default else {
+        return;
+    };
+    let (right, wanted) = match entry.data_type {
+        DataType::VisibleString => (
+            text.bytes().all(|byte| matches!(byte, b' '..=b'~')),
+            "a VISIBLE_STRING has the characters 20h to 7Eh; UNICODE_STRING has all",
+        ),
+        DataType::OctetString => (
+            octets(text).is_some(),
+            "write two hexadecimal digits for each byte, as in 0A FF",
+        ),
+        _ => return,
+    };
+    if !right {
+        findings.push(Finding::new(
+            &rules::CHARACTERS,
+            eds.line_of(entry.line, "DefaultValue"),
+            format!(
+                "the default `{text}` of {} is no {:?}",
+                section_of(object, sub),
+                entry.data_type
+            ),
+            wanted,
         ));
     }
 }

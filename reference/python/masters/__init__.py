@@ -1,0 +1,1 @@
+"""python-canopen and pymodbus as masters, to check a device with."""
