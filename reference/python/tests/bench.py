@@ -8,12 +8,12 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import can  # noqa: E402
+import can
 
-from canopen_device import default_eds, default_node  # noqa: E402
-from canopen_slave.bus import open_bus  # noqa: E402
-from canopen_slave.device import Device  # noqa: E402
-from canopen_slave.devices import DEVICES  # noqa: E402
+from canopen_device import default_eds, default_node
+from canopen_slave.bus import open_bus
+from canopen_slave.device import Device
+from canopen_slave.devices import DEVICES
 
 # Each bench has a bus of its own.
 _channels = itertools.count()
