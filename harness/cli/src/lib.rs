@@ -4,11 +4,14 @@
 mod bench;
 mod commands;
 mod complaint;
+mod control;
 mod embedded;
 mod exit;
 mod glob;
 mod input;
 mod library;
+mod links;
+mod operator;
 mod options;
 mod player;
 mod problems;
@@ -16,6 +19,7 @@ mod progress;
 mod reports;
 mod screen;
 mod select;
+mod stimulus_words;
 mod stop;
 
 pub use bench::{Behaviour, NotConnected};
@@ -24,8 +28,9 @@ pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use options::{
     CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format, ListOptions,
-    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
+    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection, ServeOptions, StimulateOptions,
 };
+pub use operator::Operator;
 pub use player::{Plan, play};
 
 use screen::Screen;
@@ -44,6 +49,8 @@ pub fn main(options: &Options) -> Exit {
         Command::Faults { format } => commands::devices::faults(*format, &mut screen),
         Command::Devices { format } => commands::devices::devices(*format, &mut screen),
         Command::Prove(options) => commands::prove::prove(options, &mut screen),
+        Command::Serve(options) => commands::serve::serve(options, &mut screen),
+        Command::Stimulate(options) => commands::stimulate::stimulate(options),
         Command::NewDevice(options) => commands::new_device::new_device(options, &mut screen),
         Command::Export { directory, force } => {
             commands::export::export(directory, *force, &mut screen)

@@ -1,8 +1,10 @@
 //! What stands on a bench: which devices, on which links, under which node-ID or address, and what may be done to them.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
 
 use crate::Position;
+use crate::device::Parity;
 use crate::model::{Effect, Located, StimulusName};
 
 /// A bench.
@@ -31,19 +33,63 @@ pub struct BenchDevice {
     pub address: Option<Located<u8>>,
     /// The stimuli there are; without a list, those that the links offer by themselves.
     pub stimuli: Option<BTreeSet<StimulusName>>,
+    /// The program that gives them on real links, with its first arguments; without one, an operator is asked.
+    pub stimulus_command: Option<Vec<String>>,
     /// What cases may do to it. Reading is always permitted, and nothing else that is not listed.
     pub permits: BTreeSet<Effect>,
     /// Where it stands.
     pub at: Position,
 }
 
-/// What carries a port: `sim:`, `socketcan:can0`, `slcan:/dev/ttyACM0`, `serial:/dev/ttyUSB0`, `tcp:host:502`.
+/// What carries a port: `sim:`, `socketcan:can0`, `slcan:/dev/ttyACM0@250000`,
+/// `serial:/dev/ttyUSB0?baud=19200&parity=even`, `tcp:host:502?framing=rtu`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Link {
     /// Of which kind it is.
     pub kind: LinkKind,
-    /// What stands after the colon; empty for `sim:`.
+    /// What stands between the colon and the `?`; empty for `sim:`.
     pub target: String,
+    /// What stands after the `?`, and the rate after an `@`.
+    pub parameters: LinkParameters,
+}
+
+/// How a link is set, where it is not set as the description of the device says.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LinkParameters {
+    /// `@250000`: bits a second of a CAN bus.
+    pub bit_rate: Option<u32>,
+    /// `baud=19200`: bits a second of a serial line.
+    pub baud: Option<u32>,
+    /// `parity=even`
+    pub parity: Option<Parity>,
+    /// `stop-bits=2`
+    pub stop_bits: Option<u8>,
+    /// `echo=yes`: whether the tester hears what it sends itself, as on many RS-485 adapters.
+    pub echo: Option<Echo>,
+    /// `framing=rtu`: how Modbus frames are carried by a connection.
+    pub framing: Option<Framing>,
+    /// `uncertainty=5ms`: how far an instant may be off, where one knows better than the link.
+    pub uncertainty: Option<Duration>,
+}
+
+/// Whether the tester hears what it sends itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Echo {
+    /// It is found out.
+    Auto,
+    /// It does.
+    Yes,
+    /// It does not.
+    No,
+}
+
+/// How Modbus frames are carried by a connection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Framing {
+    /// With the header of Modbus TCP.
+    Tcp,
+    /// As on a serial line.
+    Rtu,
 }
 
 /// A kind of link.
@@ -90,5 +136,25 @@ impl LinkKind {
     /// Whether a serial port can be connected to it.
     pub const fn carries_serial(self) -> bool {
         matches!(self, LinkKind::Sim | LinkKind::Serial | LinkKind::Tcp)
+    }
+}
+
+/// Why a text is no link.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoLink {
+    /// What is wrong.
+    pub message: String,
+    /// What was expected.
+    pub expected: String,
+    /// What to do, if that is known.
+    pub help: Option<String>,
+}
+
+impl std::str::FromStr for Link {
+    type Err = NoLink;
+
+    /// Reads a link as a bench file writes it, from a command line.
+    fn from_str(text: &str) -> Result<Link, NoLink> {
+        <Link as crate::scalar::Text>::parse(text).map_err(|wrong| wrong.into_no_link())
     }
 }

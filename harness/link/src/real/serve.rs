@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::port::Port;
 use super::ports::{GivesUp, Ports};
-use crate::{Instant, Line, LinkError, Outbox, Participant, Stimulus};
+use crate::{Instant, Line, LinkError, NotOffered, Outbox, Participant, Stimulus};
 
 /// How often the driver looks whether it is to stop, and whether there is a stimulus for the device.
 const LOOK: Duration = Duration::from_millis(50);
@@ -14,19 +14,39 @@ const LOOK: Duration = Duration::from_millis(50);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct TheDevice;
 
-/// Lets `device` take part in `ports`, its port numbers in their order, until `stop` is set. Between frames
-/// `next_stimulus` is asked whether something is to be done to it; what it does not offer it ignores.
+/// What is done to a served device beside the bus.
+pub trait Control {
+    /// The next stimulus, if there is one by now.
+    fn next(&mut self) -> Option<Stimulus>;
+
+    /// What became of it.
+    fn done(&mut self, outcome: Result<(), NotOffered>);
+}
+
+/// Nothing is done to it.
+impl Control for () {
+    fn next(&mut self) -> Option<Stimulus> {
+        None
+    }
+
+    fn done(&mut self, _: Result<(), NotOffered>) {}
+}
+
+/// Lets `device` take part in `ports` until `stop` is set; each comes with the number that it has for the device. A port
+/// of the device that is not among them is connected to nothing.
 ///
 /// # Errors
 /// [`LinkError`]: a link failed.
 pub fn serve(
     device: Box<dyn Participant>,
-    ports: Vec<Box<dyn Port>>,
-    mut next_stimulus: impl FnMut() -> Option<Stimulus>,
+    ports: Vec<(usize, Box<dyn Port>)>,
+    control: &mut dyn Control,
     stop: &AtomicBool,
 ) -> Result<(), LinkError> {
+    let (numbers, ports) = ports.into_iter().unzip();
     let mut server = Server {
         device,
+        numbers,
         ports: Ports::new(ports, GivesUp::Silently),
         outbox: Outbox::default(),
         now: Instant::START,
@@ -34,9 +54,10 @@ pub fn serve(
     while !stop.load(Ordering::Relaxed) {
         server.wake();
         server.listen();
-        if let Some(stimulus) = next_stimulus() {
+        if let Some(stimulus) = control.next() {
             let now = server.now();
-            let _ = server.device.stimulate(now, &stimulus, &mut server.outbox);
+            let outbox = &mut server.outbox;
+            control.done(server.device.stimulate(now, &stimulus, outbox));
         }
         server.send()?;
         server.follow_lines();
@@ -51,6 +72,8 @@ pub fn serve(
 
 struct Server {
     device: Box<dyn Participant>,
+    /// The device's numbers of the ports.
+    numbers: Vec<usize>,
     ports: Ports<TheDevice>,
     outbox: Outbox,
     /// The last instant the device was told: for it, time never goes back.
@@ -72,17 +95,21 @@ impl Server {
 
     fn listen(&mut self) {
         while let Some(heard) = self.ports.next_heard(Instant::NEVER) {
-            if heard.from.is_none() && self.device.line(heard.port) != Line::Off {
+            let number = self.numbers[heard.port];
+            if heard.from.is_none() && self.device.line(number) != Line::Off {
                 self.now = self.now.max(heard.at);
                 self.device
-                    .receive(self.now, heard.port, heard.what, &mut self.outbox);
+                    .receive(self.now, number, heard.what, &mut self.outbox);
             }
         }
     }
 
     fn send(&mut self) -> Result<(), LinkError> {
-        for (port, what) in self.outbox.drain() {
-            if self.device.line(port) != Line::Off {
+        for (number, what) in self.outbox.drain() {
+            let port = self.numbers.iter().position(|it| *it == number);
+            if let Some(port) = port
+                && self.device.line(number) != Line::Off
+            {
                 self.ports.send(port, TheDevice, what)?;
             }
         }
@@ -92,7 +119,7 @@ impl Server {
     /// Sets the ports as the device sets itself, where a port can be set: its baud rate may be a register.
     fn follow_lines(&mut self) {
         for port in 0..self.ports.properties().len() {
-            let line = self.device.line(port);
+            let line = self.device.line(self.numbers[port]);
             let properties = &self.ports.properties()[port];
             if line != Line::Off && line != properties.line && properties.sets_bit_rate {
                 // What cannot be set stays; then the device is not understood, as on a real line.
