@@ -55,6 +55,20 @@ fn what_nobody_knows_is_written_too() {
 }
 
 #[test]
+fn a_variable_with_a_section_for_its_value_keeps_both() {
+    let eds = eds::read(
+        "[2000]\nParameterName=a\nDataType=5\nAccessType=ro\nColour=blue\n\
+         [2000sub0]\nParameterName=a\nDataType=6\nAccessType=rw\nShape=round\n",
+    );
+    let written = eds::write(&eds);
+    let again = eds::read(&written);
+    assert_eq!(objects(&eds.dictionary), objects(&again.dictionary));
+    assert_eq!(again.findings, []);
+    assert_eq!(eds::write(&again), written);
+    assert!(written.contains("Colour=blue\n") && written.contains("Shape=round\n"));
+}
+
+#[test]
 fn the_lists_are_made_anew() {
     let eds = eds::read(
         "[1000]\nDataType=7\nAccessType=ro\n[2000]\nDataType=7\nAccessType=ro\n[6000]\nDataType=7\nAccessType=ro\n",
