@@ -26,11 +26,12 @@ pub use bench::{Behaviour, NotConnected};
 pub use complaint::Complaint;
 pub use exit::Exit;
 pub use library::{Device, Library, Place};
+pub use operator::Operator;
 pub use options::{
     CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format, ListOptions,
-    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection, ServeOptions, StimulateOptions,
+    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection, ServeOptions,
+    StimulateOptions,
 };
-pub use operator::Operator;
 pub use player::{Plan, play};
 
 use screen::Screen;

@@ -52,7 +52,11 @@ impl Operator {
 
 impl std::fmt::Debug for Operator {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if self.is_none() { "none" } else { "at the terminal" })
+        f.write_str(if self.is_none() {
+            "none"
+        } else {
+            "at the terminal"
+        })
     }
 }
 

@@ -46,7 +46,10 @@ pub(crate) fn patterns_must_match(library: &Library, plan: &Plan) -> Result<(), 
 
 /// Every device that stands on no real link must be one that can be simulated.
 pub(crate) fn must_be_simulated(devices: &[&Device]) -> Result<(), Complaint> {
-    let Some(device) = devices.iter().find(|device| device.is_simulated() && device.kind.is_none()) else {
+    let Some(device) = devices
+        .iter()
+        .find(|device| device.is_simulated() && device.kind.is_none())
+    else {
         return Ok(());
     };
     let name = &device.description.device;

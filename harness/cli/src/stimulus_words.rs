@@ -84,7 +84,12 @@ mod tests {
             let words: Vec<&str> = words.iter().map(String::as_str).collect();
             assert_eq!(parse(&words), Some(stimulus), "{words:?}");
         }
-        for wrong in [&["power"][..], &["power", "up"], &["setting", "node", "x"], &[]] {
+        for wrong in [
+            &["power"][..],
+            &["power", "up"],
+            &["setting", "node", "x"],
+            &[],
+        ] {
             assert_eq!(parse(wrong), None, "{wrong:?}");
         }
     }

@@ -63,7 +63,7 @@ fn lane() -> SimLane {
 /// Plays the case; gives back the sink.
 fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S {
     let bench = Bench {
- fixed_rates: BTreeSet::new(),
+        fixed_rates: Default::default(),
         ports: ["can".to_owned()].into(),
         stimuli: [].into(),
         permits: [].into(),

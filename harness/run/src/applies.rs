@@ -123,7 +123,7 @@ fn wrong_address(case: &Case, bench: &Bench) -> Option<String> {
 /// A bus without bits has no bit rate to change, and some interfaces may not be set.
 fn fixed_rate(case: &Case, bench: &Bench) -> Option<String> {
     let sets = |steps: &[Located<Step>]| steps.iter().any(|step| sets_bit_rate(&step.value));
-    (bench.fixed_rates.contains(CAN) && (sets(&case.control) || sets(&case.steps)))
+    (bench.fixed_rates.contains(crate::tester::CAN) && (sets(&case.control) || sets(&case.steps)))
         .then(|| "the bit rate of this link cannot be changed".to_owned())
 }
 

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::Position;
 use crate::device::Parity;
 use crate::model::{Effect, Located, StimulusName};
+use crate::scalar::Text;
 
 /// A bench.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -155,6 +156,10 @@ impl std::str::FromStr for Link {
 
     /// Reads a link as a bench file writes it, from a command line.
     fn from_str(text: &str) -> Result<Link, NoLink> {
-        <Link as crate::scalar::Text>::parse(text).map_err(|wrong| wrong.into_no_link())
+        <Link as Text>::parse(text).map_err(|wrong| NoLink {
+            message: wrong.message,
+            expected: wrong.label,
+            help: wrong.help,
+        })
     }
 }

@@ -69,10 +69,7 @@ fn open_control(path: Option<&Path>) -> Result<Box<dyn Control>, Complaint> {
 }
 
 /// Opens every link for the port of the device that it names, or for the first free one that it can carry.
-fn open_ports(
-    kind: &DeviceKind,
-    on: &[String],
-) -> Result<Vec<(usize, Box<dyn Port>)>, Complaint> {
+fn open_ports(kind: &DeviceKind, on: &[String]) -> Result<Vec<(usize, Box<dyn Port>)>, Complaint> {
     let mut ports: Vec<(usize, Box<dyn Port>)> = Vec::new();
     for text in on {
         let (role, link) = split(text)?;

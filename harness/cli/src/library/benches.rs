@@ -113,7 +113,9 @@ impl Reader {
             let links = on_bench.ports.iter();
             device.place = Some(Place {
                 name: on_bench.name.value.clone(),
-                links: links.map(|(role, link)| (role.clone(), link.value.clone())).collect(),
+                links: links
+                    .map(|(role, link)| (role.clone(), link.value.clone()))
+                    .collect(),
                 stimuli: on_bench.stimuli.clone(),
                 stimulus_command: on_bench.stimulus_command.clone(),
                 permits: on_bench.permits.clone(),
@@ -164,17 +166,13 @@ impl Reader {
         if let ([simulated, ..], [_, ..]) = (&simulated[..], &real[..]) {
             let message = "one device is both simulated and real".to_owned();
             let label = "`sim:` beside a real link";
-            self.problems.push(shown.error(simulated.at, message, label));
+            self.problems
+                .push(shown.error(simulated.at, message, label));
         }
     }
 
     /// The ports must be those of the device, on links that carry them.
-    fn check_ports(
-        &mut self,
-        on_bench: &BenchDevice,
-        device: &Device,
-        shown: &Shown<'_>,
-    ) {
+    fn check_ports(&mut self, on_bench: &BenchDevice, device: &Device, shown: &Shown<'_>) {
         self.check_all_or_none_simulated(on_bench, shown);
         let described = &device.description.ports;
         for (role, link) in &on_bench.ports {

@@ -248,7 +248,7 @@ impl Setup {
         assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
         let description = self.description();
         let bench = Bench {
-            fixed_rates: BTreeSet::new(),
+            fixed_rates: Default::default(),
             ports: ["can".to_owned()].into(),
             stimuli: [].into(),
             permits: self.permits.iter().copied().collect(),

@@ -151,7 +151,11 @@ fn set_parameter(
     }
     let not_among = |names: &[&str]| {
         let message = format!("`{name}={value}` in `{text}`");
-        Wrong::new(code::LINK, message, format!("expected {}", names.join(" or ")))
+        Wrong::new(
+            code::LINK,
+            message,
+            format!("expected {}", names.join(" or ")),
+        )
     };
     match name {
         "baud" => parameters.baud = Some(bits_a_second(text, value)?),
