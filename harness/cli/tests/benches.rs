@@ -172,11 +172,22 @@ fn bench_that_does_not_fit_is_refused_with_its_place() {
             ],
         ),
         (
-            bench("permits: []").replace("sim:", "socketcan:can0"),
+            bench("permits: []").replace("sim:", "socketcan:can0?baud=9600"),
             [
-                "this version opens only `sim:`",
-                "not `socketcan:`",
+                "`socketcan:` has no parameter `baud`",
+                "it has uncertainty",
                 "bench.yaml:4:52",
+            ],
+        ),
+        (
+            bench("permits: []").replace(
+                "kinco-servo, ports: {can: \"sim:\"}",
+                "liaomiao-encoder, ports: {can: \"sim:\", serial: \"serial:/dev/ttyS0\"}",
+            ),
+            [
+                "one device is both simulated and real",
+                "`sim:` beside a real link",
+                "bench.yaml:4:57",
             ],
         ),
         (
@@ -199,16 +210,32 @@ fn bench_that_does_not_fit_is_refused_with_its_place() {
 }
 
 #[test]
-fn link_that_is_not_opened_yet_is_a_warning_when_checked() {
+fn real_links_are_checked_without_being_opened() {
     let folder = Folder::new();
     folder.write(
         "lab.yaml",
-        bench("permits: []").replace("sim:", "slcan:/dev/ttyACM0"),
+        bench("permits: []").replace("sim:", "slcan:/dev/ttyACM0@250000"),
     );
     let ran = folder.run(&["check", "lab.yaml"]);
     assert_eq!(ran.exit(), Some(0), "{}", ran.error());
-    assert!(ran.out().contains("1 bench: 1 warning"), "{}", ran.out());
-    assert!(ran.error().contains("opens only `sim:`"), "{}", ran.error());
+    assert!(
+        ran.out().contains("1 bench: no mistakes"),
+        "{}",
+        ran.out()
+    );
+    let ran = folder.run(&["run", "canopen.nmt", "--bench", "lab.yaml", "--dry-run"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+}
+
+#[test]
+fn link_that_cannot_be_opened_breaks_the_run() {
+    let folder = Folder::new();
+    let bench = bench("permits: []").replace("sim:", "socketcan:no-such-if");
+    folder.write("lab.yaml", bench);
+    let ran = folder.run(&["run", "canopen.nmt", "--bench", "lab.yaml"]);
+    assert_eq!(ran.exit(), Some(3), "{}", ran.error());
+    let why = "socketcan:no-such-if: there is no interface no-such-if";
+    assert!(ran.error().contains(why), "{}", ran.error());
 }
 
 /// The description of the servo drive under another name, which nothing simulates.
@@ -247,7 +274,7 @@ fn device_without_a_reference_device_is_checked_and_not_simulated() {
     unknown_drive(&folder);
     let parts = [
         "no reference device \"my-drive\"",
-        "can be described and checked",
+        "a bench says which link it is connected to",
     ];
     refused(&folder, &["run", "--device", "drive"], &parts);
     refused(&folder, &["prove", "--device", "drive"], &parts);

@@ -7,6 +7,7 @@ mod open_error;
 mod port;
 mod ports;
 mod raw_frame;
+mod serial;
 pub mod serve;
 mod socketcan;
 
@@ -14,4 +15,5 @@ pub use clock::Clock;
 pub use lane::{NoStimuli, RealLane, Stimuli};
 pub use open_error::OpenError;
 pub use port::{Departure, News, Port, SHORT_WAIT, SendError};
+pub use serial::{LocalEcho, Serial, SerialOptions};
 pub use socketcan::SocketCan;
