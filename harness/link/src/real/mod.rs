@@ -2,16 +2,20 @@
 
 mod clock;
 mod hardware_clock;
+mod hub;
 mod lane;
 mod open_error;
 mod port;
 mod ports;
 mod raw_frame;
 pub mod serve;
+pub mod slcan;
 mod socketcan;
 
 pub use clock::Clock;
+pub use hub::{Hub, HubOptions};
 pub use lane::{NoStimuli, RealLane, Stimuli};
 pub use open_error::OpenError;
 pub use port::{Departure, News, Port, SHORT_WAIT, SendError};
+pub use slcan::Slcan;
 pub use socketcan::SocketCan;
