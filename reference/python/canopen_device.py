@@ -67,7 +67,7 @@ def main() -> int:
         device.power_off()
         bus.disconnect()
     # Whatever python-can and pyserial raise when an adapter goes.
-    except Exception as error:  # pylint: disable=broad-except
+    except Exception as error:
         print(f"{options.interface}:{options.channel}: {error}", file=sys.stderr)
         return 1
     return 0

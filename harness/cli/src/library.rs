@@ -23,7 +23,8 @@ use crate::embedded;
 use crate::input;
 use crate::options::Selection;
 use crate::problems;
-use benches::{LinksAre, is_bench};
+pub(crate) use benches::LinksAre;
+use benches::is_bench;
 
 /// A device with everything that is known of it.
 #[derive(Clone)]
@@ -43,6 +44,8 @@ pub struct Device {
 pub struct Place {
     /// What the bench calls it.
     pub name: String,
+    /// Whether all its links are `sim:`.
+    pub is_simulated: bool,
     /// The roles of the ports that are connected.
     pub ports: BTreeSet<String>,
     /// The stimuli there are; those that the links offer if nothing is said.
@@ -98,12 +101,16 @@ impl Library {
     /// stand on it.
     ///
     /// # Errors
-    /// As [`Library::load`]; or the bench has a link that cannot be opened.
-    pub fn load_on_bench(selection: &Selection, bench: &Path) -> Result<Library, Complaint> {
+    /// As [`Library::load`]; or the bench has a link that cannot be opened, where `links` are to be.
+    pub(crate) fn load_on_bench(
+        selection: &Selection,
+        bench: &Path,
+        links: LinksAre,
+    ) -> Result<Library, Complaint> {
         let mut reader = Reader::of(selection);
         reader.benches.clear();
         reader.bench(bench);
-        reader.devices = reader.read_benches(LinksAre::Opened);
+        reader.devices = reader.read_benches(links);
         reader.finish(selection)
     }
 

@@ -122,11 +122,12 @@ pub(crate) fn preview<'l>(
     plan: &Plan,
 ) -> Result<Vec<(&'l Suite, Vec<PlannedCase>)>, NotConnected> {
     let bench = match device.kind {
-        Some(_) => {
+        // A real device does what it does; nobody knows it before it is there.
+        Some(_) if device.place.as_ref().is_none_or(|it| it.is_simulated) => {
             let lane = bench::connect(device, &plan.behaviour)?;
             bench::bench(device, &lane as &dyn Lane, &plan.permits)
         }
-        None => bench::described_bench(device, &plan.permits),
+        _ => bench::described_bench(device, &plan.permits),
     };
     let environment = Environment {
         node: bench.node,

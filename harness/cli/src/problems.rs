@@ -111,6 +111,15 @@ pub(crate) fn placed(problem: Problem, at: Position, label: &str, text: &Arc<str
     }
 }
 
+/// `problem` with another place in the same file.
+pub(crate) fn also(mut problem: Problem, at: Position, words: &str) -> Problem {
+    problem.also.push(Also {
+        at: span(at),
+        words: words.to_owned(),
+    });
+    problem
+}
+
 fn span(at: Position) -> Span {
     Span {
         line: at.line,

@@ -247,7 +247,7 @@ fn device_without_a_reference_device_is_checked_and_not_simulated() {
     unknown_drive(&folder);
     let parts = [
         "no reference device \"my-drive\"",
-        "can be described and checked",
+        "a bench says which link it is connected to",
     ];
     refused(&folder, &["run", "--device", "drive"], &parts);
     refused(&folder, &["prove", "--device", "drive"], &parts);
@@ -313,4 +313,66 @@ fn documented_examples_are_what_they_say() {
     );
     let ran = folder.run(&["run", "--bench", "my-drive/lab.yaml"]);
     assert_eq!(ran.exit(), Some(0), "{}{}", ran.out(), ran.error());
+}
+
+/// A bench of two servo drives and what else there is, on these links.
+fn two(left: &str, right: &str) -> String {
+    format!(
+        "language: 1
+bench: mine
+devices:
+  - {{name: left, device: kinco-servo, ports: {{can: \"{left}\"}}, node: 1}}
+  - {{name: right, device: kinco-servo, ports: {{can: \"{right}\"}}}}
+"
+    )
+}
+
+#[test]
+fn two_devices_of_one_bus_have_two_numbers() {
+    let folder = Folder::new();
+    let check = ["check", "bench.yaml"];
+    folder.write("bench.yaml", two("socketcan:can0", "socketcan:can0"));
+    let parts = [
+        "a second device with the node-ID 1 on `socketcan:can0`",
+        "bench.yaml:5:12",
+        "here again",
+        "first here",
+        "give each its own `node`",
+    ];
+    refused(&folder, &check, &parts);
+    for text in [
+        two("socketcan:can0", "socketcan:can1"),
+        two("sim:", "sim:"),
+        two("socketcan:can0", "socketcan:can0").replace("node: 1", "node: 2"),
+    ] {
+        folder.write("bench.yaml", text);
+        let ran = folder.run(&check);
+        assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+    }
+    folder.write(
+        "bench.yaml",
+        "language: 1
+bench: mine
+devices:
+  - {name: drive, device: huacheng-ssts1, ports: {serial: \"tcp:10.0.0.1:502\"}, address: 7}
+  - {name: encoder, device: liaomiao-encoder, ports: {serial: \"tcp:10.0.0.1:502\"}, address: 7}
+",
+    );
+    let parts = ["a second device with the address 7 on `tcp:10.0.0.1:502`"];
+    refused(&folder, &check, &parts);
+}
+
+#[test]
+fn real_links_are_previewed_without_being_opened() {
+    let folder = Folder::new();
+    folder.write("bench.yaml", two("socketcan:no-such-bus", "sim:"));
+    let ran = folder.run(&["run", "canopen", "--bench", "bench.yaml", "--dry-run"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+    for part in [
+        "canopen.nmt on left",
+        "canopen.nmt on right",
+        " would be played",
+    ] {
+        assert!(ran.out().contains(part), "{part}\n{}", ran.out());
+    }
 }

@@ -201,9 +201,9 @@ pub struct Entry {
     pub data_type: DataType,
     /// What may be done with it.
     pub access: Access,
-    /// The lowest value it takes, if one is given.
+    /// The lowest value it takes, if one is given; for a REALn, its bit pattern.
     pub low_limit: Option<Number>,
-    /// The highest value it takes, if one is given.
+    /// The highest value it takes, if one is given; for a REALn, its bit pattern.
     pub high_limit: Option<Number>,
     /// Its value after a reset to defaults, if one is given.
     pub default: Option<Default>,

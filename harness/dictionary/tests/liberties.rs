@@ -94,6 +94,7 @@ fn what_is_no_sum_with_a_node_is_found() {
         "NODEID+1",
         "$NODEID-1",
         "$NODEID 1",
+        "$NODEID+0xFFFFFFFFFFFFFFFF+1",
     ] {
         let eds = variable(&format!("DataType=7\nDefaultValue={text}"));
         let entry = eds.dictionary.entry(0x2000, 0).unwrap();
@@ -268,6 +269,15 @@ fn strings_and_reals() {
         default_of("0x11", "-0.5"),
         Some((-0.5_f64).to_le_bytes().to_vec())
     );
+}
+
+#[test]
+fn limits_of_reals_are_bit_patterns() {
+    let eds = variable("DataType=8\nLowLimit=-0.5\nHighLimit=0x3FC00000\nDefaultValue=1.25");
+    assert_eq!(eds.findings, []);
+    let entry = eds.dictionary.entry(0x2000, 0).unwrap();
+    let bits = |value: f32| Some(Number::absolute(i128::from(value.to_bits())));
+    assert_eq!((entry.low_limit, entry.high_limit), (bits(-0.5), bits(1.5)));
 }
 
 #[test]

@@ -6,11 +6,12 @@ use fieldproof_dictionary::{
 };
 use proptest::prelude::*;
 
-const FILES: [&str; 4] = [
+const FILES: [&str; 5] = [
     include_str!("../../../fixtures/devices/teco-jn5-cm-can/TECO_510_CAN.eds"),
     include_str!("../../../fixtures/devices/liaomiao-encoder/liaomiao-encoder.eds"),
     include_str!("../../../fixtures/devices/kinco-servo/kinco-servo.eds"),
     include_str!("../../../fixtures/devices/huacheng-ssts1/huacheng-ssts1.eds"),
+    include_str!("../../../fixtures/devices/canopen-complete/canopen-complete.eds"),
 ];
 
 /// The objects without the lines they stand in.
@@ -52,6 +53,20 @@ fn what_nobody_knows_is_written_too() {
     ] {
         assert_eq!(written.matches(part).count(), 1, "{part} in\n{written}");
     }
+}
+
+#[test]
+fn a_variable_with_a_section_for_its_value_keeps_both() {
+    let eds = eds::read(
+        "[2000]\nParameterName=a\nDataType=5\nAccessType=ro\nColour=blue\n\
+         [2000sub0]\nParameterName=a\nDataType=6\nAccessType=rw\nShape=round\n",
+    );
+    let written = eds::write(&eds);
+    let again = eds::read(&written);
+    assert_eq!(objects(&eds.dictionary), objects(&again.dictionary));
+    assert_eq!(again.findings, []);
+    assert_eq!(eds::write(&again), written);
+    assert!(written.contains("Colour=blue\n") && written.contains("Shape=round\n"));
 }
 
 #[test]

@@ -104,4 +104,6 @@ codes! {
     LINK = "S060";
     /// Two devices of a bench with one name.
     DUPLICATE_DEVICE = "S061";
+    /// A line or adapter that two ports of a bench are connected to.
+    LINK_IN_USE = "S062";
 }

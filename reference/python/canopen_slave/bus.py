@@ -15,7 +15,7 @@ class Bus(canopen.Network):
     """A network that also passes on remote frames, which canopen drops, and handles one frame at a time."""
 
     # Seconds until the receiving thread sees that it shall end.
-    NOTIFIER_CYCLE = 0.1
+    NOTIFIER_CYCLE = 0.05
 
     def __init__(self, bus: can.BusABC) -> None:
         super().__init__(bus)
@@ -47,7 +47,7 @@ class Bus(canopen.Network):
                 elif function := self._remote.get(message.arbitration_id):
                     function()
             # As canopen does: what one frame did wrong shall not end the receiving thread.
-            except Exception:  # pylint: disable=broad-except
+            except Exception:
                 logger.exception("%s", message)
 
 

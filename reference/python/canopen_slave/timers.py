@@ -2,9 +2,12 @@
 
 import heapq
 import itertools
+import logging
 import threading
 import time
 from collections.abc import Callable, Hashable
+
+logger = logging.getLogger(__name__)
 
 
 class Timers:
@@ -70,4 +73,8 @@ class Timers:
                     if self._current.get(key) != ticket:
                         continue
                     del self._current[key]
-                function(instant)
+                try:
+                    function(instant)
+                # A bus that does not take a frame shall not end the timers; the receiving thread sees when it is gone.
+                except Exception:
+                    logger.exception("%s", key)

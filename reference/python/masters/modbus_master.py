@@ -17,10 +17,10 @@ from pymodbus.exceptions import ModbusIOException
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from masters.checks import Checks  # noqa: E402
-from modbus_device import default_map, description  # noqa: E402
-from modbus_slave.registers import Register, read_map  # noqa: E402
-from modbus_slave.server import is_pseudo_terminal  # noqa: E402
+from masters.checks import Checks
+from modbus_device import default_map, description
+from modbus_slave.registers import Register, read_map
+from modbus_slave.server import is_pseudo_terminal
 
 Client = ModbusSerialClient | ModbusTcpClient
 

@@ -22,9 +22,7 @@ class Encoder(Store):
         self.put(self.ADDRESS, address)
         self.put(self.VERSION, 4020)
 
-    async def async_setValues(
-        self, device_id: int, func_code: int, address: int, values: list[int]
-    ) -> ExcCodes | None:
+    async def async_setValues(self, device_id: int, func_code: int, address: int, values: list[int]) -> ExcCodes | None:
         """The address is changed by a command to FFh."""
         if device_id != COMMAND_ADDRESS or self.any_address:
             return await super().async_setValues(device_id, func_code, address, values)

@@ -42,7 +42,7 @@ class Store:
         """Whom a broadcast is for."""
         return [self.address]
 
-    async def async_getValues(  # pylint: disable=invalid-name
+    async def async_getValues(
         self, device_id: int, func_code: int, address: int, count: int = 1
     ) -> list[int] | ExcCodes:
         """Reads `count` registers."""
@@ -54,9 +54,7 @@ class Store:
             return ExcCodes.ILLEGAL_ADDRESS
         return [self._words[at] for at in asked]
 
-    async def async_setValues(  # pylint: disable=invalid-name
-        self, device_id: int, func_code: int, address: int, values: list[int]
-    ) -> ExcCodes | None:
+    async def async_setValues(self, device_id: int, func_code: int, address: int, values: list[int]) -> ExcCodes | None:
         """Writes registers, all of them or, with an exception, none."""
         self._check_address(device_id)
         if func_code not in (WRITE_SINGLE, WRITE_MULTIPLE):

@@ -155,7 +155,7 @@ class Pymodbus(unittest.TestCase):
     def test_another_address_is_an_error_of_the_store(self) -> None:
         store = SimCore(SimDevice(32, simdata=[SimData(0, values=0, datatype=DataType.REGISTERS)]))
         with self.assertRaises(KeyError):
-            store._SimCore__get_device(33)  # pylint: disable=protected-access
+            store._SimCore__get_device(33)
 
 
 class Pyserial(unittest.TestCase):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from tests.terminal import open_pseudo_terminal  # noqa: E402
+from tests.terminal import open_pseudo_terminal
 
 PROGRAM = Path(__file__).resolve().parents[1] / "modbus_device.py"
 
@@ -70,7 +70,7 @@ class Rtu(unittest.TestCase):
     def send(self, data: str) -> None:
         """Bytes as they are, and the silence after them."""
         os.write(self.line, bytes.fromhex(data))
-        time.sleep(0.06)
+        time.sleep(0.15)
 
 
 class Encoder(Rtu):

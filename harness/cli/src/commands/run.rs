@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::exit::Exit;
-use crate::library::{Device, Library};
+use crate::library::{Device, Library, LinksAre};
 use crate::options::{EFFECTS, Format, RunOptions};
 use crate::player::Plan;
 use crate::progress::Progress;
@@ -25,7 +25,13 @@ use lanes::Stage;
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
 pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
     let library = match &options.bench {
-        Some(bench) => Library::load_on_bench(&options.selection, bench)?,
+        Some(bench) => {
+            let links = match options.dry_run {
+                true => LinksAre::Named,
+                false => LinksAre::Opened,
+            };
+            Library::load_on_bench(&options.selection, bench, links)?
+        }
         None => Library::load(&options.selection)?,
     };
     let plan = plan(options);

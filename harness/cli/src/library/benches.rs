@@ -16,12 +16,15 @@ use crate::{embedded, input, problems};
 
 /// What is done with the links of a bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum LinksAre {
+pub(crate) enum LinksAre {
     /// Only looked at.
     Named,
     /// Opened, so that those that cannot be are errors.
     Opened,
 }
+
+/// The numbers of a medium that devices have so far, each with where the bench gives it.
+type Taken = BTreeMap<(String, u8), Position>;
 
 /// Whether a file is a bench, by its keys: it may have any name.
 pub(super) fn is_bench(file: &SourceFile) -> bool {
@@ -93,14 +96,36 @@ impl Reader {
             text: Arc::from(file.text.as_str()),
         };
         let mut devices = Vec::new();
+        let (mut nodes, mut addresses) = (Taken::new(), Taken::new());
         for on_bench in &bench.devices {
             let Some(mut device) = self.find_device(&on_bench.device, folder, &shown) else {
                 continue;
             };
             self.check_ports(on_bench, &device, &shown, links);
             self.set_addresses(on_bench, &mut device, &shown);
+            let description = &device.description;
+            if let Some(canopen) = &description.canopen {
+                let at = on_bench.node.as_ref().map(|node| node.at);
+                let number = ("node-ID", canopen.node, at);
+                self.check_alone(on_bench, LinkKind::carries_can, number, &mut nodes, &shown);
+            }
+            if let Some(modbus) = &description.modbus {
+                let at = on_bench.address.as_ref().map(|address| address.at);
+                let number = ("address", modbus.address, at);
+                self.check_alone(
+                    on_bench,
+                    LinkKind::carries_serial,
+                    number,
+                    &mut addresses,
+                    &shown,
+                );
+            }
             device.place = Some(Place {
                 name: on_bench.name.value.clone(),
+                is_simulated: on_bench
+                    .ports
+                    .values()
+                    .all(|it| it.value.kind == LinkKind::Sim),
                 ports: on_bench.ports.keys().cloned().collect(),
                 stimuli: on_bench.stimuli.clone(),
                 permits: on_bench.permits.clone(),
@@ -182,6 +207,33 @@ impl Reader {
                     "cannot be opened yet",
                 ));
             }
+        }
+    }
+
+    /// No other device on the same real bus has this number. In simulation each device has buses of its own.
+    fn check_alone(
+        &mut self,
+        on_bench: &BenchDevice,
+        carries: fn(LinkKind) -> bool,
+        (what, number, at): (&str, u8, Option<Position>),
+        taken: &mut Taken,
+        shown: &Shown<'_>,
+    ) {
+        let at = at.unwrap_or(on_bench.name.at);
+        for link in on_bench.ports.values().map(|link| &link.value) {
+            if link.kind == LinkKind::Sim || !carries(link.kind) {
+                continue;
+            }
+            let bus = format!("{}:{}", link.kind.name(), link.target);
+            let Some(first) = taken.insert((bus.clone(), number), at) else {
+                continue;
+            };
+            let message = format!("a second device with the {what} {number} on `{bus}`");
+            let problem = shown.error(at, message, "here again");
+            let problem = problems::also(problem, first, "first here");
+            let key = if what == "address" { "address" } else { "node" };
+            self.problems
+                .push(problem.help(format!("give each its own `{key}` on this bench")));
         }
     }
 

@@ -47,9 +47,15 @@ pub(super) fn limit(
     findings: &mut Vec<Finding>,
 ) -> Option<Number> {
     let key = key?;
-    let number = number(key.value, data_type);
+    let number = match data_type.is_real() {
+        true => pattern(key.value, data_type),
+        false => number(key.value, data_type),
+    };
     if number.is_none() {
-        findings.push(refused(key, "a whole number or $NODEID plus one"));
+        findings.push(refused(
+            key,
+            "a number of its data type, or $NODEID plus one",
+        ));
     }
     number
 }
@@ -112,6 +118,20 @@ fn real(text: &str, data_type: DataType) -> Option<Default> {
     }
 }
 
+/// The bit pattern of a real number.
+fn pattern(text: &str, data_type: DataType) -> Option<Number> {
+    match real(text, data_type)? {
+        Default::Number(pattern) => Some(pattern),
+        fraction @ Default::Text(_) => {
+            let bytes = fraction.bytes(data_type, 1)?;
+            let bits = bytes.iter().rev();
+            Some(Number::absolute(
+                bits.fold(0, |bits, byte| bits << 8 | i128::from(*byte)),
+            ))
+        }
+    }
+}
+
 /// An integer, or a sum of one `$NODEID` and integers in any order.
 fn number(text: &str, data_type: DataType) -> Option<Number> {
     if let Some(integer) = Integer::parse(text) {
@@ -127,7 +147,9 @@ fn number(text: &str, data_type: DataType) -> Option<Number> {
             offset = offset.checked_add(in_type(integer, data_type))?;
         }
     }
-    (nodes == 1).then(|| Number::relative(offset))
+    // What needs more than 64 bits could not be written back.
+    let writable = offset.unsigned_abs() <= u128::from(u64::MAX);
+    (nodes == 1 && writable).then(|| Number::relative(offset))
 }
 
 /// The value of `integer`, which may be the bit pattern of a negative number of a signed type.

@@ -70,7 +70,7 @@ fn write_object(text: &mut String, eds: &Eds, object: &Object) {
     extras(text, eds, object.line, Place::Object(object.index));
     for (sub, entry) in object.entries.iter() {
         // The name of a single value is that of its object, unless it has a section of its own.
-        if *sub == 0 && value.is_some_and(|entry| entry.name == object.name) {
+        if *sub == 0 && value.is_some_and(|it| it.name == object.name && it.line == object.line) {
             continue;
         }
         head(text, &format!("{:04X}sub{sub:X}", object.index));
@@ -140,7 +140,7 @@ fn extras(text: &mut String, eds: &Eds, from: usize, wanted: Place) {
     let head = match wanted {
         Place::Object(index) => eds.dictionary.object(index).is_some_and(|object| {
             let mut entries = object.entries.values();
-            entries.all(|entry| entry.line != from)
+            !has_value(object.kind) && entries.all(|entry| entry.line != from)
         }),
         _ => false,
     };

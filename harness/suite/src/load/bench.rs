@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::SourceFile;
 use super::suite::{check_language, check_name};
-use crate::bench::{BenchDescription, BenchDevice};
+use crate::bench::{BenchDescription, BenchDevice, Link, LinkKind};
 use crate::expand::Scope;
 use crate::file::{BenchDeviceFile, BenchFile};
 use crate::model::Located;
@@ -61,13 +61,35 @@ fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<BenchDescription> {
     }
     let mut names = BTreeMap::new();
     let devices = file.devices.value.into_iter();
+    let devices: Vec<BenchDevice> = devices
+        .map(|device| read_device(device, &mut names, problems))
+        .collect();
+    links_in_use(&devices, problems);
     Some(BenchDescription {
         language: file.language,
         bench: file.bench.value,
-        devices: devices
-            .map(|device| read_device(device, &mut names, problems))
-            .collect(),
+        devices,
     })
+}
+
+/// What one process can open once only carries one port.
+fn links_in_use(devices: &[BenchDevice], problems: &mut Vec<Problem>) {
+    let mut opened: BTreeMap<(LinkKind, &str), Position> = BTreeMap::new();
+    let mut links: Vec<&Located<Link>> = devices.iter().flat_map(|it| it.ports.values()).collect();
+    links.sort_by_key(|link| link.at);
+    for link in links {
+        let Link { kind, target } = &link.value;
+        if !matches!(kind, LinkKind::Slcan | LinkKind::Serial) {
+            continue;
+        }
+        if let Some(first) = opened.get(&(*kind, target.as_str())) {
+            let message = format!("`{}:{target}` is connected to a port already", kind.name());
+            let problem = Problem::new(code::LINK_IN_USE, message, "can be opened once only");
+            problems.push(*problem.at(link.at).also(*first, "first here"));
+        } else {
+            opened.insert((*kind, target), link.at);
+        }
+    }
 }
 
 fn read_device(

@@ -5,15 +5,16 @@ from ..behaviour import Behaviour
 from ..node import Node
 
 REGISTERS = 0x2025
-OPERATION, FREQUENCY, STATE, ERROR, FREQUENCY_IN_FORCE, OUTPUT_FREQUENCY, MODEL = 0x02, 0x03, 0x21, 0x22, 0x24, 0x25, 0x30
-RUN, REVERSE, EXTERNAL_FAULT = 1 << 0, 1 << 1, 1 << 2
+OPERATION, FREQUENCY = 0x02, 0x03
+STATE, ERROR, FREQUENCY_IN_FORCE, OUTPUT_FREQUENCY, MODEL = 0x21, 0x22, 0x24, 0x25, 0x30
+RUN, REVERSE, EXTERNAL_FAULT, RESET = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 READY, FAULT = 1 << 2, 1 << 3
 CONTROL_WORD, TARGET, DEMAND, ERROR_CODE = 0x6040, 0x6042, 0x6043, 0x603F
 FAULT_RESET, BACKWARDS = 1 << 7, 1 << 15
 # Counts of 0.02 Hz in bits 14 to 0 of 6042h; register 2502h counts 0.01 Hz.
 HIGHEST_TARGET = 20_000
 A510 = 300
-# The error code for an external fault on terminal S1 is not printed; any other than 0 is a fault.
+# What 2521h reads for an external fault is not sure; any other than 0 is a fault.
 EXTERNAL = 17
 
 
@@ -44,7 +45,7 @@ class Gateway(Behaviour):
         elif (index, sub_index) == (REGISTERS, OPERATION) and value & EXTERNAL_FAULT:
             node.put(REGISTERS, ERROR, EXTERNAL)
             node.put(ERROR_CODE, 0, 0xFF00 | EXTERNAL)
-        elif (index, sub_index) == (REGISTERS, OPERATION) and value & 1 << 3:
+        elif (index, sub_index) == (REGISTERS, OPERATION) and value & RESET:
             node.put(REGISTERS, ERROR, 0)
             node.put(ERROR_CODE, 0, 0)
         self._run(node)

@@ -25,12 +25,15 @@ fn node(eds: &Eds, device: &Commissioning, findings: &mut Vec<Finding>) {
             "write 1 to 127",
         ));
     }
+    // An empty name has its line too.
+    let section = eds.section_at(device.line);
+    let key = section.and_then(|section| section.key("NodeName"));
     let name = device.node_name.as_deref().unwrap_or_default();
     let length = name.chars().count();
     if length == 0 || length > NODE_NAME_LENGTH {
         findings.push(Finding::new(
             &rules::NAME_OF_NODE,
-            eds.line_of(device.line, "NodeName"),
+            key.map_or(device.line, |key| key.line),
             format!("NodeName has {length} characters"),
             format!("write 1 to {NODE_NAME_LENGTH} of them"),
         ));

@@ -45,7 +45,9 @@ pub(super) fn check(eds: &Eds, findings: &mut Vec<Finding>) {
         }
     }
     for object in eds.dictionary.objects() {
+        // A list that is missing is found once, not for each of its objects.
         if let Some(list) = list_of(object.index)
+            && eds.section(list).is_some()
             && !listed.contains_key(&object.index)
             && !super::is_implied(eds, object)
         {

@@ -182,7 +182,10 @@ fn structure(eds: &Eds, object: &Object, findings: &mut Vec<Finding>) {
         .key_at(object.line, "CompactSubObj")
         .and_then(|key| Integer::parse(key.value))
         .is_some_and(|count| count.value > 0);
-    sub_number(eds, object, compact, findings);
+    let section = eds.section_at(object.line);
+    if section.is_some_and(|section| place(section.name) == Some(Place::Object(object.index))) {
+        sub_number(eds, object, compact, findings);
+    }
     let Some(count) = object.entries.get(&0) else {
         findings.push(Finding::new(
             &rules::SUB_0,
