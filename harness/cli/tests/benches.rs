@@ -218,11 +218,7 @@ fn real_links_are_checked_without_being_opened() {
     );
     let ran = folder.run(&["check", "lab.yaml"]);
     assert_eq!(ran.exit(), Some(0), "{}", ran.error());
-    assert!(
-        ran.out().contains("1 bench: no mistakes"),
-        "{}",
-        ran.out()
-    );
+    assert!(ran.out().contains("1 bench: no mistakes"), "{}", ran.out());
     let ran = folder.run(&["run", "canopen.nmt", "--bench", "lab.yaml", "--dry-run"]);
     assert_eq!(ran.exit(), Some(0), "{}", ran.error());
 }
