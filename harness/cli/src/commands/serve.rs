@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{DeviceKind, Medium, Settings};
 use fieldproof_link::real::Port;
 use fieldproof_link::real::serve::{Control, serve as run_server};
-use fieldproof_link::{Parity, SerialSettings, StopBits};
+use fieldproof_link::{Joined, Parity, Participant, SerialSettings, StopBits};
 use fieldproof_report::{Problem, Severity};
 use fieldproof_suite::bench::Link;
 use fieldproof_suite::device::{self, PortDescription};
@@ -34,6 +35,7 @@ pub(crate) fn serve(options: &ServeOptions, screen: &mut Screen) -> Result<Exit,
         )
     })?;
     let ports = open_ports(kind, &options.on)?;
+    let device = with_inverter(kind, device, &ports, options.seed);
     let mut control = open_control(options.control.as_deref())?;
     let stop = stop::on_interrupt()?;
     for (_, port) in &ports {
@@ -57,6 +59,25 @@ fn kind(name: &str) -> Result<&'static DeviceKind, Complaint> {
         Complaint::unknown("reference device", name, &known)
     })
 }
+
+/// A module that is a part of an inverter has one behind it, unless its port to it is connected to something else.
+fn with_inverter(
+    kind: &DeviceKind,
+    device: Box<dyn Participant>,
+    ports: &[(usize, Box<dyn Port>)],
+    seed: u64,
+) -> Box<dyn Participant> {
+    let to_inverter = kind.ports.iter().position(|port| port.role == INVERTER);
+    match to_inverter {
+        Some(number) if ports.iter().all(|(connected, _)| *connected != number) => {
+            Box::new(Joined::new(device, number, Box::new(Inverter::new(seed))))
+        }
+        _ => device,
+    }
+}
+
+/// The role of a port to an inverter.
+const INVERTER: &str = "inverter";
 
 fn open_control(path: Option<&Path>) -> Result<Box<dyn Control>, Complaint> {
     match path {
