@@ -77,26 +77,42 @@ impl Joined {
         }
     }
 
-    /// Lets what has arrived by `now` be heard, in the order of time.
-    fn deliver(&mut self, now: Instant, out: &mut Outbox) {
-        while let Some((at, to, character)) = self.between.front().copied()
+    /// Lets everything happen that is due by `now`, each at its own instant: between the two no driver is ever late.
+    fn run_to(&mut self, now: Instant, out: &mut Outbox) {
+        while let Some(at) = self.wake_at()
             && at <= now
         {
-            self.between.pop_front();
-            // Set differently, the two do not understand each other.
-            if self.device.line(self.port) != self.other.line(0) {
-                continue;
+            match self.between.front().copied() {
+                Some((arrival, to, character)) if arrival == at => {
+                    self.between.pop_front();
+                    self.deliver(at, to, character, out);
+                }
+                _ if self.device.wake_at() == Some(at) => {
+                    self.device.wake(at, &mut self.outbox);
+                    self.sort_out(at, out);
+                }
+                _ => {
+                    self.other.wake(at, &mut self.outbox);
+                    self.sort_back(at);
+                }
             }
-            let what = Reception::Character(character);
-            match to {
-                To::Other => {
-                    self.other.receive(now, 0, what, &mut self.outbox);
-                    self.sort_back(now);
-                }
-                To::Device => {
-                    self.device.receive(now, self.port, what, &mut self.outbox);
-                    self.sort_out(now, out);
-                }
+        }
+    }
+
+    fn deliver(&mut self, at: Instant, to: To, character: Character, out: &mut Outbox) {
+        // Set differently, the two do not understand each other.
+        if self.device.line(self.port) != self.other.line(0) {
+            return;
+        }
+        let what = Reception::Character(character);
+        match to {
+            To::Other => {
+                self.other.receive(at, 0, what, &mut self.outbox);
+                self.sort_back(at);
+            }
+            To::Device => {
+                self.device.receive(at, self.port, what, &mut self.outbox);
+                self.sort_out(at, out);
             }
         }
     }
@@ -120,15 +136,7 @@ impl Participant for Joined {
     }
 
     fn wake(&mut self, now: Instant, out: &mut Outbox) {
-        self.deliver(now, out);
-        if self.device.wake_at().is_some_and(|at| at <= now) {
-            self.device.wake(now, &mut self.outbox);
-            self.sort_out(now, out);
-        }
-        if self.other.wake_at().is_some_and(|at| at <= now) {
-            self.other.wake(now, &mut self.outbox);
-            self.sort_back(now);
-        }
+        self.run_to(now, out);
     }
 
     fn stimulate(
@@ -137,6 +145,7 @@ impl Participant for Joined {
         stimulus: &Stimulus,
         out: &mut Outbox,
     ) -> Result<(), NotOffered> {
+        self.run_to(now, out);
         let given = self.device.stimulate(now, stimulus, &mut self.outbox);
         self.sort_out(now, out);
         given
@@ -218,6 +227,7 @@ mod tests {
             joined.wake(at, &mut out);
             heard.extend(out.drain().map(|(port, what)| (at.as_nanos(), port, what)));
         }
+        assert_eq!(joined.offers(), []);
         // Asked at 5 ms; the question arrives at 6 and 7 ms, each answer a millisecond after what is on the line.
         let answer = |at_ms: u64, byte| (at_ms * 1_000_000, 0, Transmission::bytes(&[byte]));
         assert_eq!(heard, [answer(8, 0x12), answer(9, 0x23)]);
