@@ -124,7 +124,7 @@ impl Participant for Joined {
     }
 
     fn receive(&mut self, now: Instant, port: usize, reception: Reception, out: &mut Outbox) {
-        self.deliver(now, out);
+        self.run_to(now, out);
         self.device.receive(now, port, reception, &mut self.outbox);
         self.sort_out(now, out);
     }

@@ -150,7 +150,7 @@ fn set_parameter(
         });
     }
     let not_among = |names: &[&str]| {
-        let message = format!("`{name}={value}` in `{text}`");
+        let message = format!("`{value}` is no `{name}`");
         Wrong::new(
             code::LINK,
             message,
