@@ -34,6 +34,14 @@ pub struct PortProperties {
     pub tells_departure: bool,
 }
 
+impl PortProperties {
+    /// Whether bits take time on it. On a bus without bits whatever is sent comes all at once, and the silence after it
+    /// tells nothing of whoever kept it.
+    pub fn has_bit_times(&self) -> bool {
+        self.sets_bit_rate
+    }
+}
+
 /// Who sent what arrived.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
