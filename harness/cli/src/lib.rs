@@ -28,9 +28,9 @@ pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use operator::Operator;
 pub use options::{
-    CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format, ListOptions,
-    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection, ServeOptions,
-    StimulateOptions,
+    BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format,
+    ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
+    ServeOptions, StimulateOptions,
 };
 pub use player::{Plan, play};
 
@@ -49,6 +49,7 @@ pub fn main(options: &Options) -> Exit {
         Command::Schema { kind } => commands::schema::schema(*kind, &mut screen),
         Command::Faults { format } => commands::devices::faults(*format, &mut screen),
         Command::Devices { format } => commands::devices::devices(*format, &mut screen),
+        Command::Bus(options) => commands::bus::bus(options, &mut screen),
         Command::Prove(options) => commands::prove::prove(options, &mut screen),
         Command::Serve(options) => commands::serve::serve(options, &mut screen),
         Command::Stimulate(options) => commands::stimulate::stimulate(options),

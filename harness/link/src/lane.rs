@@ -22,7 +22,7 @@ pub struct PortProperties {
     pub link: String,
     /// How the tester is set on it.
     pub line: Line,
-    /// Where instants come from: `simulated`, `kernel`, `hardware`, `user space`; with what is in between, in brackets.
+    /// Where instants come from: `simulated`, `kernel`, `hardware`, `adapter`, `user space`; with what is in between, in brackets.
     pub timestamps: &'static str,
     /// How far an instant may be off.
     pub uncertainty: Duration,
