@@ -318,7 +318,7 @@ fn documented_examples_are_what_they_say() {
         .skip(1)
         .map(|block| block.split("```").next().unwrap())
         .collect();
-    assert_eq!(blocks.len(), 2, "a device and a bench");
+    assert_eq!(blocks.len(), 3, "a device and two benches");
     let folder = Folder::new();
     unknown_drive(&folder);
     folder.write("my-drive/device.yaml", blocks[0]);
@@ -327,9 +327,10 @@ fn documented_examples_are_what_they_say() {
         folder.read("drive/kinco-servo.eds"),
     );
     folder.write("my-drive/lab.yaml", blocks[1]);
+    folder.write("my-drive/rack.yaml", blocks[2]);
     let checked = folder.run(&["check", "my-drive"]);
     assert!(
-        checked.out().contains("1 bench: no mistakes"),
+        checked.out().contains("2 benches: no mistakes"),
         "{}{}",
         checked.out(),
         checked.error()

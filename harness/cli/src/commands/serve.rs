@@ -4,8 +4,7 @@ use std::path::Path;
 
 use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{DeviceKind, Medium, Settings};
-use fieldproof_link::real::Port;
-use fieldproof_link::real::serve::{Control, serve as run_server};
+use fieldproof_link::real::serve::{Control, ServedPort, serve as run_server};
 use fieldproof_link::{Joined, Parity, Participant, SerialSettings, StopBits};
 use fieldproof_report::{Problem, Severity};
 use fieldproof_suite::bench::Link;
@@ -64,7 +63,7 @@ fn kind(name: &str) -> Result<&'static DeviceKind, Complaint> {
 fn with_inverter(
     kind: &DeviceKind,
     device: Box<dyn Participant>,
-    ports: &[(usize, Box<dyn Port>)],
+    ports: &[ServedPort],
     seed: u64,
 ) -> Box<dyn Participant> {
     let to_inverter = kind.ports.iter().position(|port| port.role == INVERTER);
@@ -90,8 +89,8 @@ fn open_control(path: Option<&Path>) -> Result<Box<dyn Control>, Complaint> {
 }
 
 /// Opens every link for the port of the device that it names, or for the first free one that it can carry.
-fn open_ports(kind: &DeviceKind, on: &[String]) -> Result<Vec<(usize, Box<dyn Port>)>, Complaint> {
-    let mut ports: Vec<(usize, Box<dyn Port>)> = Vec::new();
+fn open_ports(kind: &DeviceKind, on: &[String]) -> Result<Vec<ServedPort>, Complaint> {
+    let mut ports: Vec<ServedPort> = Vec::new();
     for text in on {
         let (role, link) = split(text)?;
         let carries = |number: &usize| match kind.ports[*number].medium {

@@ -32,14 +32,17 @@ impl Control for () {
     fn done(&mut self, _: Result<(), NotOffered>) {}
 }
 
-/// Lets `device` take part in `ports` until `stop` is set; each comes with the number that it has for the device. A port
-/// of the device that is not among them is connected to nothing.
+/// A port of a served device: the number that it has for the device, and what is open for it.
+pub type ServedPort = (usize, Box<dyn Port>);
+
+/// Lets `device` take part in `ports` until `stop` is set. A port of the device that is not among them is connected
+/// to nothing.
 ///
 /// # Errors
 /// [`LinkError`]: a link failed.
 pub fn serve(
     device: Box<dyn Participant>,
-    ports: Vec<(usize, Box<dyn Port>)>,
+    ports: Vec<ServedPort>,
     control: &mut dyn Control,
     stop: &AtomicBool,
 ) -> Result<(), LinkError> {
