@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fieldproof_link::{PortIndex, SerialSettings};
+use fieldproof_link::PortIndex;
 use fieldproof_record::Limits;
 use fieldproof_wire::modbus::{crc16, crc16_bytes};
 
@@ -87,21 +87,19 @@ impl Tester<'_> {
         read_answer(&bytes).map(Some)
     }
 
-    /// A reply begins no earlier than 3.5 characters after the request, and no later than promised.
+    /// A reply begins no earlier than 3.5 characters after the request, where such silences mean something, and no later
+    /// than promised.
     pub(crate) fn judge_reply_time(
         &mut self,
         port: PortIndex,
         received: &Received,
         within: Duration,
     ) -> Result<(), Stop> {
-        let silence = self
-            .session
-            .serial_settings(port)
-            .map_or(Duration::ZERO, SerialSettings::silence_3_5);
+        let silence = self.session.least_silence(port);
         let measured = received.start.since(self.session.last_sent().end);
         let limits = Limits {
-            min_ns: Some(nanoseconds(silence)),
-            max_ns: Some(nanoseconds(within.max(silence))),
+            min_ns: silence.map(nanoseconds),
+            max_ns: Some(nanoseconds(within.max(silence.unwrap_or_default()))),
         };
         let uncertainty = self.session.uncertainty(port);
         self.measure("Modbus response time", measured, uncertainty, limits)

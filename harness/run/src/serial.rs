@@ -1,5 +1,7 @@
 //! Characters into frames, by the silence between them (Modbus serial line: 3.5 characters end a frame).
 
+use std::time::Duration;
+
 use fieldproof_link::{Character, Instant, Origin, SerialSettings};
 
 /// Bytes between silences.
@@ -19,13 +21,20 @@ pub(crate) struct SerialFrame {
 #[derive(Debug)]
 pub(crate) struct Assembler {
     settings: SerialSettings,
+    /// How long a character is on the line.
+    character_time: Duration,
     frame: Option<SerialFrame>,
 }
 
 impl Assembler {
-    pub(crate) fn new(settings: SerialSettings) -> Assembler {
+    /// For a line on which bits take time, or for one on which they take none, whatever it is set to.
+    pub(crate) fn new(settings: SerialSettings, has_bit_times: bool) -> Assembler {
         Assembler {
             settings,
+            character_time: match has_bit_times {
+                true => settings.character_time(),
+                false => Duration::ZERO,
+            },
             frame: None,
         }
     }
@@ -41,7 +50,7 @@ impl Assembler {
         origin: Origin,
         character: Character,
     ) -> Option<SerialFrame> {
-        let start = at - self.settings.character_time();
+        let start = at - self.character_time;
         let before = match &self.frame {
             Some(frame)
                 if frame.origin != origin
@@ -88,12 +97,14 @@ mod tests {
     use super::*;
 
     // 9600 8N1: a character is 1.0416 ms, 3.5 characters are 3.6458 ms.
+    const SETTINGS: SerialSettings = SerialSettings {
+        baud: 9600,
+        parity: Parity::None,
+        stop_bits: StopBits::One,
+    };
+
     fn assembler() -> Assembler {
-        Assembler::new(SerialSettings {
-            baud: 9600,
-            parity: Parity::None,
-            stop_bits: StopBits::One,
-        })
+        Assembler::new(SETTINGS, true)
     }
 
     fn us(microseconds: u64) -> Instant {
@@ -138,5 +149,14 @@ mod tests {
             (second.bytes.as_slice(), second.spoilt),
             ([2, 3].as_slice(), true)
         );
+    }
+
+    #[test]
+    fn without_bit_times_a_frame_begins_when_its_first_character_came() {
+        let mut a = Assembler::new(SETTINGS, false);
+        a.take(us(2_000), Origin::Bus, Character::new(1));
+        a.take(us(2_000), Origin::Bus, Character::new(2));
+        let frame = a.finish(us(5_700)).expect("3.65 ms of silence have passed");
+        assert_eq!((frame.start, frame.end), (us(2_000), us(2_000)));
     }
 }

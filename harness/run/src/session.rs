@@ -85,7 +85,7 @@ impl<'a> Session<'a> {
             .ports()
             .iter()
             .map(|port| match port.line {
-                Line::Serial(settings) => Some(Assembler::new(settings)),
+                Line::Serial(settings) => Some(Assembler::new(settings, port.has_bit_times())),
                 Line::Can { .. } | Line::Off | Line::Stream(_) => None,
             })
             .collect();
@@ -151,6 +151,13 @@ impl<'a> Session<'a> {
             .get(port.0)?
             .as_ref()
             .map(Assembler::settings)
+    }
+
+    /// The least silence between two frames on a serial port, if it says something of whoever kept it.
+    pub(crate) fn least_silence(&self, port: PortIndex) -> Option<Duration> {
+        let properties = self.lane.ports().get(port.0)?;
+        let settings = self.serial_settings(port)?;
+        properties.has_bit_times().then(|| settings.silence_3_5())
     }
 
     pub(crate) fn emit(&mut self, event: Event) {

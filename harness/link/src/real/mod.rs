@@ -2,6 +2,7 @@
 
 mod clock;
 mod hardware_clock;
+mod hub;
 mod lane;
 mod open_error;
 mod port;
@@ -9,11 +10,14 @@ mod ports;
 mod raw_frame;
 mod serial;
 pub mod serve;
+pub mod slcan;
 mod socketcan;
 
 pub use clock::Clock;
+pub use hub::{Hub, HubOptions};
 pub use lane::{NoStimuli, RealLane, Stimuli};
 pub use open_error::OpenError;
 pub use port::{Departure, News, Port, SHORT_WAIT, SendError};
 pub use serial::{LocalEcho, Serial, SerialOptions};
+pub use slcan::Slcan;
 pub use socketcan::SocketCan;
