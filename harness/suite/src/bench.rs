@@ -46,6 +46,22 @@ pub struct Link {
     pub target: String,
 }
 
+/// What stands after host and port where RTU frames travel instead of Modbus TCP.
+pub(crate) const RTU: &str = "?framing=rtu";
+
+impl Link {
+    /// Host and port of a TCP link, and whether they take RTU frames instead of Modbus TCP; `None` for another link.
+    pub fn tcp(&self) -> Option<(&str, bool)> {
+        if self.kind != LinkKind::Tcp {
+            return None;
+        }
+        Some(match self.target.strip_suffix(RTU) {
+            Some(host_port) => (host_port, true),
+            None => (&self.target, false),
+        })
+    }
+}
+
 /// A kind of link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LinkKind {

@@ -1,6 +1,7 @@
 //! Real links: a [`RealLane`] joins open [`Port`]s, and [`serve`](mod@serve) lets a device take part in them.
 
 mod clock;
+mod connection;
 mod hardware_clock;
 mod lane;
 mod open_error;
@@ -9,9 +10,13 @@ mod ports;
 mod raw_frame;
 pub mod serve;
 mod socketcan;
+mod tcp;
+mod tcp_server;
 
 pub use clock::Clock;
 pub use lane::{NoStimuli, RealLane, Stimuli};
 pub use open_error::OpenError;
 pub use port::{Departure, News, Port, SHORT_WAIT, SendError};
 pub use socketcan::SocketCan;
+pub use tcp::Tcp;
+pub use tcp_server::TcpServer;
