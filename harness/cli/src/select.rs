@@ -3,6 +3,7 @@
 use fieldproof_report::{Problem, Severity};
 use fieldproof_run::suites_for;
 use fieldproof_suite::Suite;
+use fieldproof_suite::device::PortDescription;
 
 use crate::complaint::{Complaint, with_choice};
 use crate::library::{Device, Library};
@@ -44,20 +45,43 @@ pub(crate) fn patterns_must_match(library: &Library, plan: &Plan) -> Result<(), 
     Ok(())
 }
 
-/// Every device must be one that this version can play on.
+/// Every device that is to be simulated must be one that can be.
 pub(crate) fn must_be_simulated(devices: &[&Device]) -> Result<(), Complaint> {
-    let Some(device) = devices.iter().find(|device| device.kind.is_none()) else {
+    let is_simulated = |device: &Device| device.place.as_ref().is_none_or(|it| it.is_simulated);
+    let cannot_be = |device: &&&Device| device.kind.is_none() && is_simulated(device);
+    let Some(device) = devices.iter().find(cannot_be) else {
         return Ok(());
     };
     let name = &device.description.device;
+    let message = format!("there is no reference device \"{name}\" to simulate it");
+    let links = device.description.ports.iter().map(|(role, port)| {
+        let link = match port {
+            PortDescription::Can { .. } => "socketcan:can0",
+            PortDescription::Serial { .. } => "serial:/dev/ttyUSB0",
+        };
+        format!("{role}: \"{link}\"")
+    });
+    let ports = format!("ports: {{{}}}", links.collect::<Vec<_>>().join(", "));
+    let note = match &device.place {
+        Some(_) => {
+            format!("on this bench it stands on `sim:`; name the link it is connected to:\n{ports}")
+        }
+        None => format!(
+            "a bench says which link it is connected to: a bench.yaml beside its device.yaml\n\
+             (`new-device` has written one, in which the link is `sim:`)\n\
+             language: 1\n\
+             bench: mine\n\
+             devices:\n  - {{name: {name}, device: ., {ports}}}"
+        ),
+    };
     let known: Vec<&str> = fieldproof_devices::kinds()
         .iter()
         .map(|kind| kind.name)
         .collect();
-    let message = format!("there is no reference device \"{name}\" to simulate it");
     let problem = Problem::new(Severity::Error, message)
-        .note("this version plays in simulation only; a device without a reference device can be described and checked")
-        .note("`fieldproof run --dry-run` shows what would be played on it");
+        .note(note)
+        .note("then: fieldproof run --bench FOLDER/bench.yaml")
+        .note("`--dry-run` shows what would be played, without a device");
     Err(Complaint::input(with_choice(problem, name, &known)))
 }
 

@@ -247,7 +247,7 @@ fn device_without_a_reference_device_is_checked_and_not_simulated() {
     unknown_drive(&folder);
     let parts = [
         "no reference device \"my-drive\"",
-        "can be described and checked",
+        "a bench says which link it is connected to",
     ];
     refused(&folder, &["run", "--device", "drive"], &parts);
     refused(&folder, &["prove", "--device", "drive"], &parts);

@@ -123,7 +123,9 @@ impl Key<'_> {
     }
 
     pub(crate) fn has_blanks(&self) -> bool {
-        self.name.contains(char::is_whitespace)
+        // Most names are plain ASCII, in which a look at the bytes is enough.
+        let plain = self.name.bytes().all(|byte| byte.is_ascii_graphic());
+        !plain && self.name.contains(char::is_whitespace)
     }
 }
 

@@ -35,6 +35,7 @@ fn our_own_files_are_free_of_findings() {
         fixture!("liaomiao-encoder/liaomiao-encoder.eds"),
         fixture!("kinco-servo/kinco-servo.eds"),
         fixture!("huacheng-ssts1/huacheng-ssts1.eds"),
+        fixture!("canopen-complete/canopen-complete.eds"),
     ] {
         assert_eq!(shown(&findings(text)), [""; 0]);
     }

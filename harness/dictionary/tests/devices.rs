@@ -1,4 +1,4 @@
-//! The EDS files and register tables of the four devices.
+//! The EDS files and register tables of the devices.
 
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
@@ -14,6 +14,7 @@ const TECO: &str = fixture!("teco-jn5-cm-can/TECO_510_CAN.eds");
 const ENCODER: &str = fixture!("liaomiao-encoder/liaomiao-encoder.eds");
 const KINCO: &str = fixture!("kinco-servo/kinco-servo.eds");
 const HUACHENG: &str = fixture!("huacheng-ssts1/huacheng-ssts1.eds");
+const COMPLETE: &str = fixture!("canopen-complete/canopen-complete.eds");
 
 /// The default of an entry; no bytes if it has none.
 fn default_of(eds: &Eds, index: u16, sub: u8, node: u8) -> Vec<u8> {
@@ -63,7 +64,7 @@ fn nothing_is_lost_and_the_counts_are_right() {
 
 #[test]
 fn sub_index_0_of_our_files_is_the_highest_sub_index() {
-    for text in [ENCODER, KINCO, HUACHENG] {
+    for text in [ENCODER, KINCO, HUACHENG, COMPLETE] {
         let eds = eds::read(text);
         for object in eds.dictionary.objects() {
             let counted = matches!(object.kind, ObjectKind::Array | ObjectKind::Record);
@@ -237,4 +238,45 @@ fn register_tables() {
             i128::from(register.high)
         );
     }
+}
+
+#[test]
+fn the_complete_device_has_every_data_type_and_every_object_of_a_slave() {
+    let eds = eds::read(COMPLETE);
+    assert_eq!(eds.findings, []);
+    for code in 0x01..=0x1B_u16 {
+        let data_type = DataType::from_code(code);
+        if matches!(data_type, DataType::Unknown(_)) {
+            continue;
+        }
+        let settable = eds.dictionary.entry(0x2000 + code, 0).unwrap();
+        assert_eq!(settable.data_type, data_type);
+        assert!(settable.access.readable() && settable.access.writable());
+        assert_eq!(
+            settable.default.is_some(),
+            settable.default_bytes(1).is_some(),
+            "{data_type:?}"
+        );
+        let fixed = data_type.bits().is_some();
+        assert_eq!(settable.pdo_mapping, fixed, "{data_type:?}");
+        let sent = eds.dictionary.entry(0x2100 + code, 0);
+        assert_eq!(sent.map(|sent| sent.data_type), fixed.then_some(data_type));
+        let integer = fixed && settable.low_limit.is_some();
+        let others = data_type.is_real()
+            || matches!(
+                data_type,
+                DataType::Boolean | DataType::TimeOfDay | DataType::TimeDifference
+            );
+        assert_eq!(integer, fixed && !others, "{data_type:?}");
+    }
+    for index in [
+        0x1000, 0x1001, 0x1003, 0x1005, 0x1006, 0x1007, 0x1008, 0x1009, 0x100A, 0x100C, 0x100D,
+        0x1010, 0x1011, 0x1012, 0x1013, 0x1014, 0x1015, 0x1016, 0x1017, 0x1018, 0x1019, 0x1029,
+        0x1200, 0x1201, 0x1400, 0x1401, 0x1402, 0x1403, 0x1600, 0x1601, 0x1602, 0x1603, 0x1800,
+        0x1801, 0x1802, 0x1803, 0x1A00, 0x1A01, 0x1A02, 0x1A03,
+    ] {
+        assert!(eds.dictionary.object(index).is_some(), "{index:04X}");
+    }
+    assert_eq!(eds.device_info.lss_supported, Some(true));
+    assert_eq!(eds.device_info.bit_rates_kbit_per_s.len(), 8);
 }

@@ -6,11 +6,12 @@ use fieldproof_dictionary::{
 };
 use proptest::prelude::*;
 
-const FILES: [&str; 4] = [
+const FILES: [&str; 5] = [
     include_str!("../../../fixtures/devices/teco-jn5-cm-can/TECO_510_CAN.eds"),
     include_str!("../../../fixtures/devices/liaomiao-encoder/liaomiao-encoder.eds"),
     include_str!("../../../fixtures/devices/kinco-servo/kinco-servo.eds"),
     include_str!("../../../fixtures/devices/huacheng-ssts1/huacheng-ssts1.eds"),
+    include_str!("../../../fixtures/devices/canopen-complete/canopen-complete.eds"),
 ];
 
 /// The objects without the lines they stand in.

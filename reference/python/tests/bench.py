@@ -1,6 +1,7 @@
 """A device and a tester on one virtual bus."""
 
 import itertools
+import logging
 import sys
 import time
 import unittest
@@ -25,6 +26,12 @@ class Bench(unittest.TestCase):
     device = "liaomiao-encoder"
 
     def setUp(self) -> None:
+        # The slave survives what goes wrong in it; a test does not.
+        no_errors = self.assertNoLogs("canopen_slave", "ERROR")
+        no_errors.__enter__()
+        self.addCleanup(no_errors.__exit__, None, None, None)
+        # canopen complains of each block download.
+        logging.getLogger("canopen").setLevel(logging.CRITICAL)
         self.channel = f"bench{next(_channels)}"
         self.tester = can.Bus(interface="virtual", channel=self.channel)
         self.addCleanup(self.tester.shutdown)

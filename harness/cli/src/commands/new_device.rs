@@ -50,10 +50,7 @@ pub(crate) fn new_device(
     if let Some(given) = &registers {
         check_registers(given)?;
     }
-    let claims = eds
-        .as_ref()
-        .map(|given| eds::read(&eds::decode(&given.bytes)))
-        .map(|eds| infer::Claims::of(&eds));
+    let claims = eds.as_ref().map(claims).transpose()?;
     let name = name_of(folder);
     let device = text::Device {
         name: &name,
@@ -84,11 +81,23 @@ pub(crate) fn new_device(
     screen.print(&format!(
         "{} files written to {folder}\n\
          what no file can tell is marked NOT KNOWN in {folder}/device.yaml\n\
-         next: fieldproof check {folder}\n      fieldproof run --device {folder} --dry-run\n",
+         next: fieldproof check {folder}\n      fieldproof run --device {folder} --dry-run\n\
+         then: name its link in {folder}/bench.yaml\n      fieldproof run --bench {folder}/bench.yaml\n",
         files.len(),
         folder = folder.display(),
     ));
     Ok(Exit::Passed)
+}
+
+fn claims(given: &Given) -> Result<infer::Claims, Complaint> {
+    let eds = eds::read(&eds::decode(&given.bytes));
+    if eds.dictionary.objects().next().is_some() {
+        return Ok(infer::Claims::of(&eds));
+    }
+    let problem = Problem::new(Severity::Error, "no object is described in this file")
+        .in_file(given.from.display().to_string())
+        .help("is it an EDS? That is a text with sections such as [DeviceInfo] and [1000]; `fieldproof eds check` says more");
+    Err(Complaint::input(problem))
 }
 
 fn check_registers(given: &Given) -> Result<(), Complaint> {

@@ -41,10 +41,11 @@ impl Word {
     /// The word that `key` is, in any case and with any blanks in it.
     pub(super) fn of(key: Key<'_>) -> Option<Word> {
         let mut words = Word::ALL.iter();
-        let found = match key.has_blanks() {
-            true => words.find(|(_, name)| key.is(name)),
-            false => words.find(|(_, name)| key.name.eq_ignore_ascii_case(name)),
-        };
+        let found = words.find(|(_, name)| key.name.eq_ignore_ascii_case(name));
+        let found = found.or_else(|| {
+            let mut words = Word::ALL.iter().filter(|_| key.has_blanks());
+            words.find(|(_, name)| key.is(name))
+        });
         found.map(|(word, _)| *word)
     }
 }

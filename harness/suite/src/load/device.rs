@@ -81,30 +81,11 @@ fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<DeviceDescription> {
     }
     let ports_at = root.entry("ports").map_or(root.at, |entry| entry.key.at);
     let ports = read_ports(file.ports.value, root.get("ports"), ports_at, problems);
-    let is_can = |port: &PortDescription| matches!(port, PortDescription::Can { .. });
-    for (side, needs, has) in [
-        (
-            file.canopen.is_some().then_some("canopen"),
-            "can",
-            ports.values().any(is_can),
-        ),
-        (
-            file.modbus.is_some().then_some("modbus"),
-            "serial",
-            ports.values().any(|port| !is_can(port)),
-        ),
-    ] {
-        if let Some(side) = side
-            && !has
-        {
-            let message = format!("the device has a `{side}` side and no port for it");
-            let problem = Problem::new(
-                code::NO_PORT,
-                message,
-                format!("needs a port with `{needs}`"),
-            );
-            problems.push(*problem.at(ports_at));
-        }
+    if file.canopen.is_some() {
+        side_has_port("canopen", "can", &ports, ports_at, problems);
+    }
+    if file.modbus.is_some() {
+        side_has_port("modbus", "serial", &ports, ports_at, problems);
     }
     let deviates = file.deviates.into_iter();
     Some(DeviceDescription {
@@ -123,6 +104,30 @@ fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<DeviceDescription> {
             .collect(),
         sources: file.sources,
     })
+}
+
+/// Suites play on the ports of these names, whatever else a device has.
+fn side_has_port(
+    side: &str,
+    role: &str,
+    ports: &BTreeMap<String, PortDescription>,
+    at: Position,
+    problems: &mut Vec<Problem>,
+) {
+    let carries = |port: &PortDescription| match port {
+        PortDescription::Can { .. } => side == "canopen",
+        PortDescription::Serial { .. } => side == "modbus",
+    };
+    if ports.get(role).is_some_and(carries) {
+        return;
+    }
+    let message = format!("the device has a `{side}` side and no port `{role}` for it");
+    let label = format!("expected `{role}: {{{role}: ..}}` here, the port that its suites play on");
+    let mut problem = Problem::new(code::NO_PORT, message, label);
+    if let Some((other, _)) = ports.iter().find(|(_, port)| carries(port)) {
+        problem = problem.help(format!("is it `{other}`? Then call that `{role}`"));
+    }
+    problems.push(*problem.at(at));
 }
 
 fn read_ports(
