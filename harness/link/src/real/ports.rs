@@ -129,12 +129,13 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         is_due.then(|| self.heard.pop_front()).flatten()
     }
 
-    /// Waits until something comes on any port, but not later than `until`; then takes all that has come.
+    /// Waits until something comes on any port, but not later than `until` and not for long; then takes all that has
+    /// come.
     pub(super) fn wait(&mut self, until: Instant) -> Result<(), LinkError> {
         if let Some(error) = &self.failed {
             return Err(error.clone());
         }
-        let timeout = until.since(self.clock.now());
+        let timeout = until.since(self.clock.now()).min(GIVE_UP);
         if timeout > SHORT_WAIT && self.take_waiting() {
             return Ok(());
         }
