@@ -78,7 +78,7 @@ impl Text for Link {
             LinkKind::Tcp if !is_host_and_port(target.strip_suffix(RTU).unwrap_or(target)) => {
                 wrong(
                     format!("`{text}` names no host and port"),
-                    "expected a link such as \"tcp:192.168.0.5:502\", or with \"?framing=rtu\" after it",
+                    "expected a link such as \"tcp:192.168.0.5:502\"",
                 )
             }
             _ if target.trim().is_empty() => wrong(
