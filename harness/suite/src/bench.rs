@@ -108,3 +108,26 @@ impl LinkKind {
         matches!(self, LinkKind::Sim | LinkKind::Serial | LinkKind::Tcp)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Text as _;
+
+    #[test]
+    fn a_tcp_link_says_which_frames_travel_on_it() {
+        let tcp = |text: &str| {
+            let link = Link::parse(text).ok()?;
+            link.tcp()
+                .map(|(host_port, is_rtu)| (host_port.to_owned(), is_rtu))
+        };
+        assert_eq!(tcp("tcp:plc:502"), Some(("plc:502".into(), false)));
+        assert_eq!(
+            tcp("tcp:[::1]:502?framing=rtu"),
+            Some(("[::1]:502".into(), true))
+        );
+        assert_eq!(tcp("tcp:plc:502?framing=ascii"), None);
+        assert_eq!(tcp("tcp:plc?framing=rtu"), None);
+        assert_eq!(tcp("serial:/dev/ttyUSB0"), None);
+    }
+}
