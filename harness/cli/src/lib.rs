@@ -23,8 +23,8 @@ pub use complaint::Complaint;
 pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use options::{
-    CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format, ListOptions,
-    NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
+    BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format,
+    ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
 };
 pub use player::{Plan, play};
 
@@ -43,6 +43,7 @@ pub fn main(options: &Options) -> Exit {
         Command::Schema { kind } => commands::schema::schema(*kind, &mut screen),
         Command::Faults { format } => commands::devices::faults(*format, &mut screen),
         Command::Devices { format } => commands::devices::devices(*format, &mut screen),
+        Command::Bus(options) => commands::bus::bus(options, &mut screen),
         Command::Prove(options) => commands::prove::prove(options, &mut screen),
         Command::NewDevice(options) => commands::new_device::new_device(options, &mut screen),
         Command::Export { directory, force } => {

@@ -1,9 +1,10 @@
 //! What can be written on the command line.
 
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, value_parser};
 use fieldproof_run::effect_name;
 use fieldproof_suite::model::Effect;
 
@@ -60,6 +61,8 @@ pub enum Command {
     },
     /// Play every suite against every fault and show which case catches which
     Prove(ProveOptions),
+    /// Offer a CAN bus without adapters, which programs share over SLCAN, until interrupted
+    Bus(BusOptions),
     /// Write a device description to start from
     NewDevice(NewDeviceOptions),
     /// Write the suites and device descriptions that the program carries into a folder
@@ -206,6 +209,32 @@ pub struct ProveOptions {
     #[arg(long, default_value = "text")]
     pub format: Format,
 }
+
+/// Options of `bus`.
+#[derive(Debug, Args)]
+#[command(after_help = BUS_EXIT_CODES)]
+#[command(group(ArgGroup::new("places").args(["tcp", "pty"]).required(true).multiple(true)))]
+pub struct BusOptions {
+    /// Listen here for connections; port 0 is a free one.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub tcp: Option<SocketAddr>,
+    /// Make so many pseudo-terminals.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=32))]
+    pub pty: Option<u8>,
+    /// Let each frame take its time on the bus; else it takes none.
+    #[arg(long)]
+    pub paced: bool,
+    /// Bits a second for programs that set none.
+    #[arg(long, value_name = "BITS", default_value_t = 125_000, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub bit_rate: u32,
+}
+
+const BUS_EXIT_CODES: &str = "It prints its links, one a line, and ends with Ctrl-C.
+
+Exit codes:
+  0  it was interrupted
+  2  the input was wrong
+  3  the address is taken, or the bus broke";
 
 /// Options of `new-device`.
 #[derive(Debug, Args)]

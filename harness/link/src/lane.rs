@@ -22,7 +22,7 @@ pub struct PortProperties {
     pub link: String,
     /// How the tester is set on it.
     pub line: Line,
-    /// Where instants come from: `simulated`, `kernel`, `hardware`, `user space`.
+    /// Where instants come from: `simulated`, `kernel`, `hardware`, `adapter`, `user space`; with what is in between, in brackets.
     pub timestamps: &'static str,
     /// How far an instant may be off.
     pub uncertainty: Duration,
@@ -32,6 +32,14 @@ pub struct PortProperties {
     /// over. Then it comes back as an [`Arrival`] of [`Origin::Tester`] with the instant at which it left, after all that
     /// came before it and before all that came after it.
     pub tells_departure: bool,
+}
+
+impl PortProperties {
+    /// Whether bits take time on it. On a bus without bits whatever is sent comes all at once, and the silence after it
+    /// tells nothing of whoever kept it.
+    pub fn has_bit_times(&self) -> bool {
+        self.sets_bit_rate
+    }
 }
 
 /// Who sent what arrived.
@@ -70,7 +78,7 @@ pub struct Sent {
 /// The link failed: neither a wrong device nor a wrong suite.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
-    /// A frame on a serial port, or characters on a CAN port.
+    /// A frame on a serial port, characters on a CAN port, or a spoilt character where there is no parity to be wrong.
     #[error("port {port} cannot carry this")]
     WrongKind {
         /// The port's name.

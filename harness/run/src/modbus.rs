@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fieldproof_link::{Framing, Line, PortIndex, SerialSettings};
+use fieldproof_link::{Framing, Line, PortIndex};
 use fieldproof_record::Limits;
 use fieldproof_wire::modbus::{crc16, crc16_bytes};
 
@@ -99,16 +99,15 @@ impl Tester<'_> {
         }
     }
 
-    /// A reply begins no earlier than 3.5 characters after the request, where there are such silences, and no later than
-    /// promised.
+    /// A reply begins no earlier than 3.5 characters after the request, where such silences mean something, and no later
+    /// than promised.
     pub(crate) fn judge_reply_time(
         &mut self,
         port: PortIndex,
         received: &Received,
         within: Duration,
     ) -> Result<(), Stop> {
-        let settings = self.session.serial_settings(port);
-        let silence = settings.map(SerialSettings::silence_3_5);
+        let silence = self.session.least_silence(port);
         let measured = received.start.since(self.session.last_sent().end);
         let limits = Limits {
             min_ns: silence.map(nanoseconds),

@@ -27,6 +27,8 @@ pub(crate) struct SerialFrame {
 #[derive(Debug)]
 pub(crate) struct Assembler {
     line: ByteLine,
+    /// How long a character is on the line.
+    character_time: Duration,
     frame: Option<SerialFrame>,
 }
 
@@ -38,14 +40,23 @@ enum ByteLine {
 }
 
 impl Assembler {
-    /// For a line that carries characters.
-    pub(crate) fn new(line: Line) -> Option<Assembler> {
+    /// For a line that carries characters: one on which bits take time, or one on which they take none, whatever it is
+    /// set to.
+    pub(crate) fn new(line: Line, has_bit_times: bool) -> Option<Assembler> {
         let line = match line {
             Line::Serial(settings) => ByteLine::Serial(settings),
             Line::Stream(framing) => ByteLine::Stream(framing),
             Line::Off | Line::Can { .. } => return None,
         };
-        Some(Assembler { line, frame: None })
+        let character_time = match line {
+            ByteLine::Serial(settings) if has_bit_times => settings.character_time(),
+            ByteLine::Serial(_) | ByteLine::Stream(_) => Duration::ZERO,
+        };
+        Some(Assembler {
+            line,
+            character_time,
+            frame: None,
+        })
     }
 
     /// How the serial line is set, if it is one.
@@ -72,10 +83,7 @@ impl Assembler {
         origin: Origin,
         character: Character,
     ) -> Option<SerialFrame> {
-        let start = match self.line {
-            ByteLine::Serial(settings) => at - settings.character_time(),
-            ByteLine::Stream(_) => at,
-        };
+        let start = at - self.character_time;
         let silence = self.silence();
         let before = match &self.frame {
             Some(frame) if frame.origin != origin || start.since(frame.end) >= silence => {
@@ -139,19 +147,28 @@ mod tests {
     use super::*;
 
     // 9600 8N1: a character is 1.0416 ms, 3.5 characters are 3.6458 ms.
+    const SETTINGS: SerialSettings = SerialSettings {
+        baud: 9600,
+        parity: Parity::None,
+        stop_bits: StopBits::One,
+    };
+
     fn assembler() -> Assembler {
-        let settings = SerialSettings {
-            baud: 9600,
-            parity: Parity::None,
-            stop_bits: StopBits::One,
-        };
-        Assembler::new(Line::Serial(settings)).expect("a serial line carries characters")
+        serial(true)
+    }
+
+    fn serial(has_bit_times: bool) -> Assembler {
+        let line = Line::Serial(SETTINGS);
+        Assembler::new(line, has_bit_times).expect("a serial line carries characters")
+    }
+
+    fn stream(framing: Framing) -> Assembler {
+        Assembler::new(Line::Stream(framing), false).expect("a connection carries characters")
     }
 
     /// What comes out of an assembler when these bytes come at these microseconds, and nothing after them.
     fn assembled(framing: Framing, chunks: &[(u64, &[u8])]) -> Vec<Vec<u8>> {
-        let line = Line::Stream(framing);
-        let mut assembler = Assembler::new(line).expect("a connection carries characters");
+        let mut assembler = stream(framing);
         let mut frames = Vec::new();
         for (at, bytes) in chunks {
             for byte in *bytes {
@@ -207,6 +224,15 @@ mod tests {
         );
     }
 
+    #[test]
+    fn without_bit_times_a_frame_begins_when_its_first_character_came() {
+        let mut a = serial(false);
+        a.take(us(2_000), Origin::Bus, Character::new(1));
+        a.take(us(2_000), Origin::Bus, Character::new(2));
+        let frame = a.finish(us(5_700)).expect("3.65 ms of silence have passed");
+        assert_eq!((frame.start, frame.end), (us(2_000), us(2_000)));
+    }
+
     const TCP_ANSWER: [u8; 11] = [0, 7, 0, 0, 0, 5, 0x20, 3, 2, 0x0F, 0xB4];
     const RTU_ANSWER: [u8; 7] = [0x20, 3, 2, 0x0F, 0xB4, 0x01, 0xC4];
 
@@ -222,8 +248,7 @@ mod tests {
         for chunks in cases {
             assert_eq!(assembled(Framing::ModbusTcp, chunks), [whole, whole]);
         }
-        let mut assembler =
-            Assembler::new(Line::Stream(Framing::ModbusTcp)).expect("it carries characters");
+        let mut assembler = stream(Framing::ModbusTcp);
         let frames: Vec<SerialFrame> = TCP_ANSWER
             .iter()
             .filter_map(|byte| assembler.take(us(1), Origin::Bus, Character::new(*byte)))

@@ -86,7 +86,7 @@ impl<'a> Session<'a> {
         let assemblers: Vec<Option<Assembler>> = lane
             .ports()
             .iter()
-            .map(|port| Assembler::new(port.line))
+            .map(|port| Assembler::new(port.line, port.has_bit_times()))
             .collect();
         let last_activity = vec![now; assemblers.len()];
         Session {
@@ -157,6 +157,13 @@ impl<'a> Session<'a> {
     pub(crate) fn next_transaction(&mut self) -> u16 {
         self.transaction = self.transaction.wrapping_add(1);
         self.transaction
+    }
+
+    /// The least silence between two frames on a serial port, if it says something of whoever kept it.
+    pub(crate) fn least_silence(&self, port: PortIndex) -> Option<Duration> {
+        let properties = self.lane.ports().get(port.0)?;
+        let settings = self.serial_settings(port)?;
+        properties.has_bit_times().then(|| settings.silence_3_5())
     }
 
     pub(crate) fn emit(&mut self, event: Event) {

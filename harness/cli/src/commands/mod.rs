@@ -1,5 +1,6 @@
 //! The commands.
 
+pub(crate) mod bus;
 pub(crate) mod check;
 pub(crate) mod devices;
 pub(crate) mod eds;

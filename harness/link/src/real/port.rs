@@ -41,12 +41,20 @@ pub trait Port: Send {
         None
     }
 
+    /// How long a frame may wait for its turn and its acknowledge, and the port be busy.
+    fn patience(&self) -> Duration {
+        PATIENCE
+    }
+
     /// Sets it otherwise: another bit rate, say.
     ///
     /// # Errors
     /// [`LinkError`]: it cannot be set so.
     fn set_line(&mut self, line: Line) -> Result<(), LinkError>;
 }
+
+/// The [`Port::patience`] of a port that knows no better.
+const PATIENCE: Duration = Duration::from_millis(100);
 
 /// The longest that [`Port::take_waiting`] waits: 10 ms as asked for, and as many again as a slow kernel clock may add
 /// twice.

@@ -11,8 +11,8 @@ use super::Clock;
 use super::port::{Departure, News, Port, SHORT_WAIT, SendError, down};
 use crate::{Instant, Line, LinkError, PortProperties, Reception, Sent, Transmission};
 
-/// How long a port may be busy, or a frame wait for its turn and its acknowledge.
-const GIVE_UP: Duration = Duration::from_millis(100);
+/// How long to wait at most before the ports are looked at again: they have things to do beside.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// How long to wait before a busy port is tried again.
 const BUSY_RETRY: Duration = Duration::from_micros(200);
@@ -96,11 +96,12 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         from: Sender,
         what: Transmission,
     ) -> Result<Option<Sent>, LinkError> {
-        let give_up = self.clock.now() + GIVE_UP;
+        let started = self.clock.now();
         loop {
             let Some(open) = self.ports.get_mut(port) else {
                 return Err(no_such_port(port));
             };
+            let give_up = started + open.patience();
             match open.send(&mut self.clock, &what) {
                 Ok(Departure::At(sent)) => {
                     self.hear_own(port, from, &what, sent);
@@ -135,7 +136,7 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         if let Some(error) = &self.failed {
             return Err(error.clone());
         }
-        let timeout = until.since(self.clock.now()).min(GIVE_UP);
+        let timeout = until.since(self.clock.now()).min(LOOK);
         if timeout > SHORT_WAIT && self.take_waiting() {
             return Ok(());
         }
@@ -203,7 +204,9 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         let Some(oldest) = self.leaving[port].front() else {
             return;
         };
-        if self.gives_up == GivesUp::WithAnError && self.clock.now().since(oldest.since) > GIVE_UP {
+        let patience = self.ports[port].patience();
+        if self.gives_up == GivesUp::WithAnError && self.clock.now().since(oldest.since) > patience
+        {
             self.leaving[port].clear();
             let error = self.not_acknowledged(port);
             self.failed.get_or_insert(error);

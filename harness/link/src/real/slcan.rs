@@ -24,6 +24,10 @@ use crate::{BusError, Instant, Line, LinkError, PortProperties, Reception, Sent,
 /// How many frames an adapter may have taken without saying so; the least of them have room for eight.
 const MOST_ASKED: usize = 8;
 
+/// At 10 kbit/s eight frames take a tenth of a second, and others may go first; and a bus that is a program has to be
+/// given the processor.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 /// How often the adapter is asked for its status.
 const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
@@ -283,6 +287,10 @@ impl Port for Slcan {
                 Err(error) => return Err(self.down(&error)),
             }
         }
+    }
+
+    fn patience(&self) -> Duration {
+        PATIENCE
     }
 
     fn set_line(&mut self, line: Line) -> Result<(), LinkError> {

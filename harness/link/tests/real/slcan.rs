@@ -214,7 +214,7 @@ fn an_adapter_is_set_and_left_in_this_order() {
     assert_eq!(port.properties().uncertainty, Duration::from_micros(2_280));
     drop(port);
     let heard = adapter.join().unwrap().join(" ");
-    assert_eq!(heard, "  C C Z2 Z1 N C S4 O F C");
+    assert_eq!(heard, "  C V C Z2 Z1 N C S4 O F C");
 }
 
 #[test]

@@ -11,8 +11,8 @@ use nix::errno::Errno;
 use nix::fcntl::OFlag;
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::termios::{
-    BaudRate, ControlFlags, SetArg, SpecialCharacterIndices, cfmakeraw, cfsetspeed, tcgetattr,
-    tcsetattr,
+    BaudRate, ControlFlags, FlushArg, SetArg, SpecialCharacterIndices, cfmakeraw, cfsetspeed,
+    tcflush, tcgetattr, tcsetattr,
 };
 use nix::sys::time::TimeSpec;
 
@@ -190,6 +190,8 @@ fn open_terminal(path: &str) -> Result<Connection, String> {
         _ => error.to_string(),
     })?;
     make_raw(file.as_fd()).map_err(|error| format!("{path} is no serial port: {error}"))?;
+    // What came for whoever had it open before. Where it cannot be dropped, it is no answer to anything.
+    let _ = tcflush(file.as_fd(), FlushArg::TCIFLUSH);
     Ok(Connection::on(file))
 }
 

@@ -16,9 +16,6 @@ use crate::{Instant, Line, PortProperties};
 /// How long an adapter may take to answer. USB to serial converters collect bytes for 16 ms.
 const ANSWER: Duration = Duration::from_millis(400);
 
-/// How long nothing comes once an adapter has left the bus and has told everything before.
-const SILENCE: Duration = Duration::from_millis(40);
-
 /// How often an adapter that does not answer is tried: some start anew when their port is opened.
 const ATTEMPTS: usize = 3;
 
@@ -96,20 +93,12 @@ impl Slcan {
     /// Closes the channel, which may still be open, and sees whether somebody answers.
     fn find_adapter(&mut self) -> Result<(), String> {
         for _ in 0..ATTEMPTS {
-            // Whatever was begun before is ended, and refused.
-            for command in [Command::Nothing, Command::Nothing, Command::Close] {
-                command.write(self.connection.outbox());
-            }
-            self.settle()?;
+            let tells_version = self.synchronize()?;
             self.kind.acknowledges = matches!(
                 self.ask(&Command::Close)?,
                 Some(Answer::Done | Answer::Refused(_))
             );
-            if self.kind.acknowledges {
-                return Ok(());
-            }
-            // Some answer to nothing but this.
-            if let Some(Answer::Text(_)) = self.ask(&Command::Version)? {
+            if self.kind.acknowledges || tells_version {
                 return Ok(());
             }
         }
@@ -120,26 +109,39 @@ impl Slcan {
         )
     }
 
-    /// Drops everything that comes until nothing comes any more.
-    fn settle(&mut self) -> Result<(), String> {
-        let give_up = SystemInstant::now() + ANSWER;
+    /// Drops everything that comes until the version does, which is asked for last; whether it came.
+    fn synchronize(&mut self) -> Result<bool, String> {
+        // Whatever was begun before is ended, and refused.
+        for command in [
+            Command::Nothing,
+            Command::Nothing,
+            Command::Close,
+            Command::Version,
+        ] {
+            command.write(self.connection.outbox());
+        }
         self.connection.flush().map_err(|error| error.to_string())?;
+        let give_up = SystemInstant::now() + ANSWER;
         loop {
-            self.connection
-                .wait(SILENCE)
-                .map_err(|error| error.to_string())?;
-            let filled = self.connection.fill();
-            let more = filled.map_err(|error| self.down(&error).to_string())?;
-            let mut came = more;
-            while self.connection.next_line().is_some() {
-                came = true;
+            while let Some((line, end)) = self.connection.next_line() {
+                if matches!(Answer::read(line, end), Answer::Text(_)) {
+                    return Ok(true);
+                }
             }
-            if !came || SystemInstant::now() >= give_up {
-                self.asked.clear();
-                self.held.clear();
-                return Ok(());
+            if !self.wait(give_up)? {
+                return Ok(false);
             }
         }
+    }
+
+    /// Waits for more to read; whether there is still time.
+    fn wait(&mut self, give_up: SystemInstant) -> Result<bool, String> {
+        let left = give_up.saturating_duration_since(SystemInstant::now());
+        let waited = self.connection.wait(left);
+        waited.map_err(|error| error.to_string())?;
+        let filled = self.connection.fill();
+        filled.map_err(|error| self.down(&error).to_string())?;
+        Ok(!left.is_zero())
     }
 
     /// Sends `command` and waits for the answer to it; `None` if none comes. What comes before it is kept.
@@ -161,15 +163,9 @@ impl Slcan {
                     _ => return Ok(Some(answer)),
                 }
             }
-            let left = give_up.saturating_duration_since(SystemInstant::now());
-            if left.is_zero() {
+            if !self.wait(give_up)? {
                 return Ok(None);
             }
-            self.connection
-                .wait(left)
-                .map_err(|error| error.to_string())?;
-            let filled = self.connection.fill();
-            filled.map_err(|error| self.down(&error).to_string())?;
         }
     }
 
