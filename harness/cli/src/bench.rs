@@ -7,7 +7,8 @@ use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{Medium, Settings, UnknownFault};
 use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_link::{
-    Lane, Parity, Participant, PortIndex, SerialSettings, StimulusKind, StopBits,
+    Framing, Lane, Line, Parity, Participant, PortIndex, PortProperties, SerialSettings,
+    StimulusKind, StopBits,
 };
 use fieldproof_run::Bench;
 use fieldproof_suite::device::{self, PortDescription};
@@ -63,6 +64,7 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
         seed: behaviour.seed,
         fault: behaviour.fault.clone(),
         variant: behaviour.variant.clone(),
+        framing: None,
     };
     let participant = (kind.build)(&settings).map_err(NotConnected::Unknown)?;
     let mut builder = Builder::new();
@@ -128,7 +130,11 @@ fn serial(baud: u32, parity: device::Parity, stop_bits: u8) -> SerialSettings {
 /// What `lane` has and permits, for the engine.
 pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>) -> Bench {
     let ports = lane.ports().iter().map(|port| port.name.clone()).collect();
-    bench_of(device, ports, lane.offers().into_iter().collect(), permits)
+    let mut bench = bench_of(device, ports, lane.offers().into_iter().collect(), permits);
+    let is_tcp = |port: &&PortProperties| port.line == Line::Stream(Framing::ModbusTcp);
+    let over_tcp = lane.ports().iter().filter(is_tcp);
+    bench.modbus_tcp = over_tcp.map(|port| port.name.clone()).collect();
+    bench
 }
 
 /// As far as it is known of a device that cannot be simulated: its ports, and no stimulus.
@@ -155,7 +161,11 @@ fn bench_of(
         }
     }
     let description = &device.description;
+    let place = device.place.as_ref();
     Bench {
+        modbus_tcp: place
+            .map(|place| place.modbus_tcp.clone())
+            .unwrap_or_default(),
         ports,
         stimuli,
         permits,

@@ -48,6 +48,8 @@ pub struct Place {
     pub is_simulated: bool,
     /// The roles of the ports that are connected.
     pub ports: BTreeSet<String>,
+    /// Those of them that are connected by Modbus TCP.
+    pub modbus_tcp: BTreeSet<String>,
     /// The stimuli there are; those that the links offer if nothing is said.
     pub stimuli: Option<BTreeSet<StimulusName>>,
     /// What is permitted.

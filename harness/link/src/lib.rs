@@ -9,6 +9,7 @@
 //! lane that spoils what comes through it.
 
 mod bus_error;
+mod connected;
 mod lane;
 mod participant;
 pub mod real;
@@ -18,6 +19,7 @@ mod time;
 mod wrap;
 
 pub use bus_error::BusError;
+pub use connected::Connected;
 pub use lane::{
     Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
     StimulusError,

@@ -64,6 +64,7 @@ fn lane() -> SimLane {
 fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S {
     let bench = Bench {
         ports: ["can".to_owned()].into(),
+        modbus_tcp: [].into(),
         stimuli: [].into(),
         permits: [].into(),
         node: Some(1),

@@ -46,6 +46,22 @@ pub struct Link {
     pub target: String,
 }
 
+/// What stands after host and port where RTU frames travel instead of Modbus TCP.
+pub(crate) const RTU: &str = "?framing=rtu";
+
+impl Link {
+    /// Host and port of a TCP link, and whether they take RTU frames instead of Modbus TCP; `None` for another link.
+    pub fn tcp(&self) -> Option<(&str, bool)> {
+        if self.kind != LinkKind::Tcp {
+            return None;
+        }
+        Some(match self.target.strip_suffix(RTU) {
+            Some(host_port) => (host_port, true),
+            None => (&self.target, false),
+        })
+    }
+}
+
 /// A kind of link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LinkKind {
@@ -90,5 +106,28 @@ impl LinkKind {
     /// Whether a serial port can be connected to it.
     pub const fn carries_serial(self) -> bool {
         matches!(self, LinkKind::Sim | LinkKind::Serial | LinkKind::Tcp)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Text as _;
+
+    #[test]
+    fn a_tcp_link_says_which_frames_travel_on_it() {
+        let tcp = |text: &str| {
+            let link = Link::parse(text).ok()?;
+            link.tcp()
+                .map(|(host_port, is_rtu)| (host_port.to_owned(), is_rtu))
+        };
+        assert_eq!(tcp("tcp:plc:502"), Some(("plc:502".into(), false)));
+        assert_eq!(
+            tcp("tcp:[::1]:502?framing=rtu"),
+            Some(("[::1]:502".into(), true))
+        );
+        assert_eq!(tcp("tcp:plc:502?framing=ascii"), None);
+        assert_eq!(tcp("tcp:plc?framing=rtu"), None);
+        assert_eq!(tcp("serial:/dev/ttyUSB0"), None);
     }
 }

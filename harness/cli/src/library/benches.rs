@@ -127,6 +127,12 @@ impl Reader {
                     .values()
                     .all(|it| it.value.kind == LinkKind::Sim),
                 ports: on_bench.ports.keys().cloned().collect(),
+                modbus_tcp: on_bench
+                    .ports
+                    .iter()
+                    .filter(|(_, link)| link.value.tcp().is_some_and(|(_, is_rtu)| !is_rtu))
+                    .map(|(role, _)| role.clone())
+                    .collect(),
                 stimuli: on_bench.stimuli.clone(),
                 permits: on_bench.permits.clone(),
             });

@@ -249,6 +249,7 @@ impl Setup {
         let description = self.description();
         let bench = Bench {
             ports: ["can".to_owned()].into(),
+            modbus_tcp: [].into(),
             stimuli: [].into(),
             permits: self.permits.iter().copied().collect(),
             node: Some(1),

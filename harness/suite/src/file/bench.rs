@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::Deserialize;
 
-use crate::bench::{Link, LinkKind};
+use crate::bench::{Link, LinkKind, RTU};
 use crate::code;
 use crate::model::{Effect, Located, StimulusName};
 use crate::problem::{Wrong, nearest};
@@ -75,10 +75,12 @@ impl Text for Link {
                 kind,
                 target: String::new(),
             }),
-            LinkKind::Tcp if !is_host_and_port(target) => wrong(
-                format!("`{text}` names no host and port"),
-                "expected a link such as \"tcp:192.168.0.5:502\"",
-            ),
+            LinkKind::Tcp if !is_host_and_port(target.strip_suffix(RTU).unwrap_or(target)) => {
+                wrong(
+                    format!("`{text}` names no host and port"),
+                    "expected a link such as \"tcp:192.168.0.5:502\"",
+                )
+            }
             _ if target.trim().is_empty() => wrong(
                 format!("`{text}` does not say which"),
                 "expected the interface or its path after the colon",
@@ -94,7 +96,7 @@ impl Text for Link {
         json_schema!({
             "description": "What carries the port.",
             "type": "string",
-            "pattern": "^(sim:|(socketcan|slcan|serial):.*\\S.*|tcp:.+:[0-9]+)$"
+            "pattern": "^(sim:|(socketcan|slcan|serial):.*\\S.*|tcp:.+:[0-9]+(\\?framing=rtu)?)$"
         })
     }
 }
