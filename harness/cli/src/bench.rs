@@ -8,9 +8,11 @@ use fieldproof_devices::{Medium, Settings, UnknownFault};
 use fieldproof_link::real::{NoStimuli, OpenError, RealLane, Stimuli};
 use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_link::{
-    Lane, Parity, Participant, PortIndex, SerialSettings, StimulusKind, StopBits,
+    Framing, Lane, Line, Parity, Participant, PortIndex, PortProperties, SerialSettings,
+    StimulusKind, StopBits,
 };
 use fieldproof_run::Bench;
+use fieldproof_suite::bench::{self, LinkKind};
 use fieldproof_suite::device::{self, PortDescription};
 use fieldproof_suite::model::{Effect, StimulusName};
 
@@ -133,6 +135,7 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
         seed: behaviour.seed,
         fault: behaviour.fault.clone(),
         variant: behaviour.variant.clone(),
+        framing: None,
     };
     let participant = (kind.build)(&settings).map_err(NotConnected::Unknown)?;
     let mut builder = Builder::new();
@@ -198,9 +201,13 @@ pub(crate) fn serial(baud: u32, parity: device::Parity, stop_bits: u8) -> Serial
 /// What `lane` has and permits, for the engine.
 pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>) -> Bench {
     let ports = lane.ports().iter().map(|port| port.name.clone()).collect();
-    let fixed = lane.ports().iter().filter(|port| !port.sets_bit_rate);
+    let roles = |wanted: fn(&PortProperties) -> bool| {
+        let ports = lane.ports().iter().filter(move |port| wanted(port));
+        ports.map(|port| port.name.clone()).collect()
+    };
     Bench {
-        fixed_rates: fixed.map(|port| port.name.clone()).collect(),
+        fixed_rates: roles(|port| !port.sets_bit_rate),
+        modbus_tcp: roles(|port| port.line == Line::Stream(Framing::ModbusTcp)),
         ..bench_of(device, ports, lane.offers().into_iter().collect(), permits)
     }
 }
@@ -237,7 +244,12 @@ fn bench_of(
         }
     }
     let description = &device.description;
+    let links = device.place.iter().flat_map(|place| &place.links);
+    let over_tcp = links.filter(|(_, link)| {
+        link.kind == LinkKind::Tcp && link.parameters.framing != Some(bench::Framing::Rtu)
+    });
     Bench {
+        modbus_tcp: over_tcp.map(|(role, _)| role.clone()).collect(),
         ports,
         fixed_rates: BTreeSet::new(),
         stimuli,

@@ -1,8 +1,12 @@
 //! Opens the links that a bench names.
 
-use fieldproof_link::SerialSettings;
-use fieldproof_link::real::{LocalEcho, OpenError, Port, Serial, SerialOptions, Slcan, SocketCan};
-use fieldproof_suite::bench::{Echo, Link, LinkKind};
+use std::time::Duration;
+
+use fieldproof_link::real::{
+    LocalEcho, OpenError, Port, Serial, SerialOptions, Slcan, SocketCan, Tcp, TcpServer,
+};
+use fieldproof_link::{Framing, SerialSettings};
+use fieldproof_suite::bench::{self, Echo, Link, LinkKind};
 use fieldproof_suite::device::PortDescription;
 
 use crate::bench::serial;
@@ -38,8 +42,26 @@ pub(crate) fn open(
             let settings = settings(link, described)?;
             Box::new(Serial::open(role, target, settings, options)?)
         }
+        (LinkKind::Tcp, PortDescription::Serial { .. }) => Box::new(Tcp::open(
+            role,
+            target,
+            framing(link),
+            CONNECT_TIMEOUT,
+            uncertainty,
+        )?),
         _ => return Err(cannot_carry(link, role)),
     })
+}
+
+/// How long a server may take to accept a connection.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// Modbus TCP, unless the link says otherwise.
+pub(crate) fn framing(link: &Link) -> Framing {
+    match link.parameters.framing {
+        Some(bench::Framing::Rtu) => Framing::Rtu,
+        Some(bench::Framing::Tcp) | None => Framing::ModbusTcp,
+    }
 }
 
 fn settings(link: &Link, described: &PortDescription) -> Result<SerialSettings, OpenError> {
@@ -65,7 +87,7 @@ fn cannot_carry(link: &Link, role: &str) -> OpenError {
     OpenError::new(&text, format!("it carries no {role} port"))
 }
 
-/// Opens `link` for the port `role` of a reference device.
+/// Opens `link` for the port `role` of a reference device, which listens where a tester connects.
 ///
 /// # Errors
 /// As [`open`].
@@ -74,5 +96,12 @@ pub(crate) fn open_to_serve(
     link: &Link,
     described: &PortDescription,
 ) -> Result<Box<dyn Port>, OpenError> {
-    open(role, link, described)
+    match link.kind {
+        LinkKind::Tcp => Ok(Box::new(TcpServer::listen(
+            role,
+            &link.target,
+            framing(link),
+        )?)),
+        _ => open(role, link, described),
+    }
 }

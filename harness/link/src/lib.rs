@@ -9,6 +9,7 @@
 //! lane that spoils what comes through it.
 
 mod bus_error;
+mod connected;
 mod joined;
 mod lane;
 mod participant;
@@ -19,6 +20,7 @@ mod time;
 mod wrap;
 
 pub use bus_error::BusError;
+pub use connected::Connected;
 pub use joined::Joined;
 pub use lane::{
     Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,

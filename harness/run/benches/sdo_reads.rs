@@ -65,6 +65,7 @@ fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S
     let bench = Bench {
         fixed_rates: Default::default(),
         ports: ["can".to_owned()].into(),
+        modbus_tcp: [].into(),
         stimuli: [].into(),
         permits: [].into(),
         node: Some(1),

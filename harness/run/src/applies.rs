@@ -5,8 +5,11 @@ use std::collections::BTreeSet;
 use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature};
 use fieldproof_suite::model::{
-    Case, Effect, Located, Need, Protocol, ReadExpectation, SdoRead, Step, StimulusName,
+    Case, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
+    SendBytes, Step, StimulusName,
 };
+
+use crate::tester::SERIAL;
 
 /// What the bench has and permits.
 #[derive(Debug, Clone)]
@@ -15,6 +18,8 @@ pub struct Bench {
     pub ports: BTreeSet<String>,
     /// The roles of those whose bit rate cannot be changed from here.
     pub fixed_rates: BTreeSet<String>,
+    /// Those of them whose link is Modbus TCP, where a header stands around a PDU instead of address and CRC.
+    pub modbus_tcp: BTreeSet<String>,
     /// The stimuli it offers.
     pub stimuli: BTreeSet<StimulusKind>,
     /// The effects it permits.
@@ -34,6 +39,7 @@ pub fn skip_reason(
 ) -> Option<String> {
     missing_port(protocol, bench)
         .or_else(|| missing_need(case, device, bench))
+        .or_else(|| rtu_alone(case, bench))
         .or_else(|| missing_claim(case, device))
         .or_else(|| missing_permission(case, device, bench))
         .or_else(|| wrong_address(case, bench))
@@ -54,7 +60,7 @@ fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
 
 fn missing_need(case: &Case, device: &DeviceDescription, bench: &Bench) -> Option<String> {
     case.needs.iter().find_map(|need| match need {
-        Need::Feature(feature) if !device.features.contains(feature) => Some(format!(
+        Need::Feature(feature) if !is_claimed(*feature, device, bench) => Some(format!(
             "the device does not claim {}",
             feature_name(*feature)
         )),
@@ -64,6 +70,48 @@ fn missing_need(case: &Case, device: &DeviceDescription, bench: &Bench) -> Optio
         )),
         _ => None,
     })
+}
+
+/// A device that has Modbus TCP and no serial line answers there what it would answer on one.
+fn is_claimed(feature: Feature, device: &DeviceDescription, bench: &Bench) -> bool {
+    let over_tcp = feature == Feature::ModbusRtu && bench.modbus_tcp.contains(SERIAL);
+    device.features.contains(&feature)
+        || (over_tcp && device.features.contains(&Feature::ModbusTcp))
+}
+
+/// What makes sense on a serial line alone is not played on Modbus TCP.
+fn rtu_alone(case: &Case, bench: &Bench) -> Option<String> {
+    if bench.modbus_tcp.is_empty() {
+        return None;
+    }
+    let steps = case.control.iter().chain(&case.steps);
+    steps
+        .chain(&case.restore.steps)
+        .find_map(|step| rtu_step(&step.value, bench))
+}
+
+fn rtu_step(step: &Step, bench: &Bench) -> Option<String> {
+    let is_tcp =
+        |port: &Option<String>| bench.modbus_tcp.contains(port.as_deref().unwrap_or(SERIAL));
+    match step {
+        Step::SendBytes(SendBytes { port, .. }) | Step::ExpectBytes(ExpectBytes { port, .. })
+            if is_tcp(port) =>
+        {
+            Some("written as an RTU frame; this link is Modbus TCP".to_owned())
+        }
+        Step::Modbus(Modbus { to: Some(to), .. })
+            if is_tcp(&None) && bench.address != Some(*to) =>
+        {
+            Some(format!(
+                "sent to address {to}; this link is Modbus TCP, with one device at its end"
+            ))
+        }
+        Step::Repeat(repeat) => {
+            let mut steps = repeat.steps.iter();
+            steps.find_map(|step| rtu_step(&step.value, bench))
+        }
+        _ => None,
+    }
 }
 
 fn missing_claim(case: &Case, device: &DeviceDescription) -> Option<String> {

@@ -2,8 +2,11 @@
 
 use fieldproof_can::{Frame, Id};
 use fieldproof_dictionary::Dictionary;
+use fieldproof_link::{Framing, Line, PortIndex};
 use fieldproof_record::{Direction, ExcerptLine, FrameEvent};
-use fieldproof_wire::describe::{Direction as ModbusDirection, describe_frame, describe_modbus};
+use fieldproof_wire::describe::{
+    Direction as ModbusDirection, describe_frame, describe_modbus, describe_modbus_tcp,
+};
 
 use crate::modbus::show_bytes;
 use crate::object_names::object_names;
@@ -32,9 +35,7 @@ fn line(session: &Session<'_>, dictionary: Option<&Dictionary>, traffic: &Traffi
             let frame = frame_of(event);
             ExcerptLine {
                 at_ns: event.at_ns,
-                port: session
-                    .port_name(fieldproof_link::PortIndex(event.port.into()))
-                    .to_owned(),
+                port: session.port_name(PortIndex(event.port.into())).to_owned(),
                 direction: event.direction,
                 raw: frame.map(|frame| frame.to_string()).unwrap_or_default(),
                 decoded: frame
@@ -49,8 +50,7 @@ fn line(session: &Session<'_>, dictionary: Option<&Dictionary>, traffic: &Traffi
                 Direction::Sent => true,
                 Direction::Companion => false,
                 Direction::Received => {
-                    session.port_name(fieldproof_link::PortIndex(event.port.into()))
-                        != crate::tester::SERIAL
+                    session.port_name(PortIndex(event.port.into())) != crate::tester::SERIAL
                 }
             };
             let direction = if from_master {
@@ -60,12 +60,15 @@ fn line(session: &Session<'_>, dictionary: Option<&Dictionary>, traffic: &Traffi
             };
             ExcerptLine {
                 at_ns: event.at_ns,
-                port: session
-                    .port_name(fieldproof_link::PortIndex(event.port.into()))
-                    .to_owned(),
+                port: session.port_name(PortIndex(event.port.into())).to_owned(),
                 direction: event.direction,
                 raw: show_bytes(&event.bytes),
-                decoded: describe_modbus(&event.bytes, direction),
+                decoded: match session.line(PortIndex(event.port.into())) {
+                    Line::Stream(Framing::ModbusTcp) => {
+                        describe_modbus_tcp(&event.bytes, direction)
+                    }
+                    _ => describe_modbus(&event.bytes, direction),
+                },
                 marked: false,
             }
         }

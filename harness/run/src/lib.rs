@@ -12,6 +12,7 @@ mod excerpt;
 mod lane;
 mod limits;
 mod modbus;
+mod modbus_tcp;
 mod node;
 mod object_names;
 mod pdo_procedure;

@@ -2,16 +2,17 @@
 
 use std::time::Duration;
 
-use fieldproof_link::PortIndex;
+use fieldproof_link::{Framing, Line, PortIndex};
 use fieldproof_record::Limits;
 use fieldproof_wire::modbus::{crc16, crc16_bytes};
 
 use crate::limits::{nanoseconds, show};
+use crate::modbus_tcp;
 use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
-use crate::tester::Tester;
+use crate::tester::{SERIAL, Tester};
 
-/// An answer by the rules of the line: right CRC, no spoilt character, not before its time.
+/// An answer by the rules of the line: right CRC or header, no spoilt character, not before its time.
 #[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) address: u8,
@@ -67,8 +68,16 @@ impl Tester<'_> {
         pdu: &[u8],
         within: Duration,
     ) -> Result<Option<Answer>, Stop> {
-        let port = self.port(crate::tester::SERIAL)?;
-        self.session.send_bytes(port, &adu(to, pdu))?;
+        let port = self.port(SERIAL)?;
+        let transaction = match self.session.line(port) {
+            Line::Stream(Framing::ModbusTcp) => Some(self.session.next_transaction()),
+            _ => None,
+        };
+        let request = match transaction {
+            Some(transaction) => modbus_tcp::adu(transaction, to, pdu),
+            None => adu(to, pdu),
+        };
+        self.session.send_bytes(port, &request)?;
         let Some((bytes, received)) = self.first_serial(port, within)? else {
             return Ok(None);
         };
@@ -84,7 +93,10 @@ impl Tester<'_> {
                 Came::Other,
             ));
         }
-        read_answer(&bytes).map(Some)
+        match transaction {
+            Some(transaction) => modbus_tcp::read_answer(&bytes, transaction, to).map(Some),
+            None => read_answer(&bytes).map(Some),
+        }
     }
 
     /// A reply begins no earlier than 3.5 characters after the request, where such silences mean something, and no later

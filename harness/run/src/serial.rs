@@ -1,10 +1,16 @@
-//! Characters into frames, by the silence between them (Modbus serial line: 3.5 characters end a frame).
+//! Characters into frames: on a serial line by the silence between them (3.5 characters end a frame), on a connection,
+//! where silence means little, by the length that a frame says it has.
 
 use std::time::Duration;
 
-use fieldproof_link::{Character, Instant, Origin, SerialSettings};
+use fieldproof_link::{Character, Framing, Instant, Line, Origin, SerialSettings};
+use fieldproof_wire::modbus::tcp::{self, RawTcp};
+use fieldproof_wire::modbus::{Extent, response_extent};
 
-/// Bytes between silences.
+/// On a connection: nothing more for so long, and a frame that does not say how long it is has ended.
+const NOTHING_MORE: Duration = Duration::from_millis(50);
+
+/// Bytes that belong together.
 #[derive(Debug)]
 pub(crate) struct SerialFrame {
     /// The start of the first character.
@@ -20,30 +26,57 @@ pub(crate) struct SerialFrame {
 /// Collects the characters of one port.
 #[derive(Debug)]
 pub(crate) struct Assembler {
-    settings: SerialSettings,
+    line: ByteLine,
     /// How long a character is on the line.
     character_time: Duration,
     frame: Option<SerialFrame>,
 }
 
+/// What carries the characters.
+#[derive(Debug, Clone, Copy)]
+enum ByteLine {
+    Serial(SerialSettings),
+    Stream(Framing),
+}
+
 impl Assembler {
-    /// For a line on which bits take time, or for one on which they take none, whatever it is set to.
-    pub(crate) fn new(settings: SerialSettings, has_bit_times: bool) -> Assembler {
-        Assembler {
-            settings,
-            character_time: match has_bit_times {
-                true => settings.character_time(),
-                false => Duration::ZERO,
-            },
+    /// For a line that carries characters: one on which bits take time, or one on which they take none, whatever it is
+    /// set to.
+    pub(crate) fn new(line: Line, has_bit_times: bool) -> Option<Assembler> {
+        let line = match line {
+            Line::Serial(settings) => ByteLine::Serial(settings),
+            Line::Stream(framing) => ByteLine::Stream(framing),
+            Line::Off | Line::Can { .. } => return None,
+        };
+        let character_time = match line {
+            ByteLine::Serial(settings) if has_bit_times => settings.character_time(),
+            ByteLine::Serial(_) | ByteLine::Stream(_) => Duration::ZERO,
+        };
+        Some(Assembler {
+            line,
+            character_time,
             frame: None,
+        })
+    }
+
+    /// How the serial line is set, if it is one.
+    pub(crate) fn settings(&self) -> Option<SerialSettings> {
+        match self.line {
+            ByteLine::Serial(settings) => Some(settings),
+            ByteLine::Stream(_) => None,
         }
     }
 
-    pub(crate) fn settings(&self) -> SerialSettings {
-        self.settings
+    /// The silence that ends a frame which nothing else ends.
+    fn silence(&self) -> Duration {
+        match self.line {
+            ByteLine::Serial(settings) => settings.silence_3_5(),
+            ByteLine::Stream(_) => NOTHING_MORE,
+        }
     }
 
-    /// One more character that ended at `at`. Gives the frame before it, if this one begins another.
+    /// One more character that ended at `at`. Gives the frame before it, if this one begins another, or the frame that
+    /// is whole with it.
     pub(crate) fn take(
         &mut self,
         at: Instant,
@@ -51,11 +84,9 @@ impl Assembler {
         character: Character,
     ) -> Option<SerialFrame> {
         let start = at - self.character_time;
+        let silence = self.silence();
         let before = match &self.frame {
-            Some(frame)
-                if frame.origin != origin
-                    || start.since(frame.end) >= self.settings.silence_3_5() =>
-            {
+            Some(frame) if frame.origin != origin || start.since(frame.end) >= silence => {
                 self.frame.take()
             }
             _ => None,
@@ -70,14 +101,17 @@ impl Assembler {
         frame.end = at;
         frame.bytes.push(character.byte);
         frame.spoilt |= character.spoilt;
-        before
+        // A frame of one character is never whole, so there are not two to give.
+        match self.line {
+            ByteLine::Stream(framing) if is_whole(framing, &frame.bytes) => self.frame.take(),
+            _ => before,
+        }
     }
 
     /// When the frame that has begun will have ended, if nothing follows.
     pub(crate) fn ends_at(&self) -> Option<Instant> {
-        self.frame
-            .as_ref()
-            .map(|frame| frame.end + self.settings.silence_3_5())
+        let frame = self.frame.as_ref()?;
+        Some(frame.end + self.silence())
     }
 
     /// The frame, if the silence after it is long enough by `now`.
@@ -87,6 +121,22 @@ impl Assembler {
         } else {
             None
         }
+    }
+}
+
+/// Whether an answer on a connection is as long as it says.
+fn is_whole(framing: Framing, bytes: &[u8]) -> bool {
+    match framing {
+        Framing::ModbusTcp => {
+            let claimed = RawTcp(bytes).claimed_len();
+            // What no header may say is believed by nobody: then only silence tells where it ends.
+            let possible = claimed.filter(|len| (tcp::HEADER_LEN..=tcp::MAX_ADU_LEN).contains(len));
+            possible.is_some_and(|len| bytes.len() >= len)
+        }
+        Framing::Rtu => match bytes.get(1..).map(response_extent) {
+            Some(Extent::Bytes(pdu)) => bytes.len() >= pdu + 3,
+            Some(Extent::NotYet | Extent::Open) | None => false,
+        },
     }
 }
 
@@ -104,7 +154,30 @@ mod tests {
     };
 
     fn assembler() -> Assembler {
-        Assembler::new(SETTINGS, true)
+        serial(true)
+    }
+
+    fn serial(has_bit_times: bool) -> Assembler {
+        let line = Line::Serial(SETTINGS);
+        Assembler::new(line, has_bit_times).expect("a serial line carries characters")
+    }
+
+    fn stream(framing: Framing) -> Assembler {
+        Assembler::new(Line::Stream(framing), false).expect("a connection carries characters")
+    }
+
+    /// What comes out of an assembler when these bytes come at these microseconds, and nothing after them.
+    fn assembled(framing: Framing, chunks: &[(u64, &[u8])]) -> Vec<Vec<u8>> {
+        let mut assembler = stream(framing);
+        let mut frames = Vec::new();
+        for (at, bytes) in chunks {
+            for byte in *bytes {
+                frames.extend(assembler.take(us(*at), Origin::Bus, Character::new(*byte)));
+            }
+        }
+        frames.extend(assembler.finish(us(10_000_000)));
+        assert!(assembler.ends_at().is_none());
+        frames.into_iter().map(|frame| frame.bytes).collect()
     }
 
     fn us(microseconds: u64) -> Instant {
@@ -153,10 +226,65 @@ mod tests {
 
     #[test]
     fn without_bit_times_a_frame_begins_when_its_first_character_came() {
-        let mut a = Assembler::new(SETTINGS, false);
+        let mut a = serial(false);
         a.take(us(2_000), Origin::Bus, Character::new(1));
         a.take(us(2_000), Origin::Bus, Character::new(2));
         let frame = a.finish(us(5_700)).expect("3.65 ms of silence have passed");
         assert_eq!((frame.start, frame.end), (us(2_000), us(2_000)));
+    }
+
+    const TCP_ANSWER: [u8; 11] = [0, 7, 0, 0, 0, 5, 0x20, 3, 2, 0x0F, 0xB4];
+    const RTU_ANSWER: [u8; 7] = [0x20, 3, 2, 0x0F, 0xB4, 0x01, 0xC4];
+
+    #[test]
+    fn a_header_says_where_a_frame_ends_however_the_bytes_come() {
+        let whole: &[u8] = &TCP_ANSWER;
+        let twice = [TCP_ANSWER, TCP_ANSWER].concat();
+        let cases: [&[(u64, &[u8])]; 3] = [
+            &[(1, &twice)],
+            &[(1, &twice[..3]), (2, &twice[3..14]), (3, &twice[14..])],
+            &[(1, whole), (200_000, whole)],
+        ];
+        for chunks in cases {
+            assert_eq!(assembled(Framing::ModbusTcp, chunks), [whole, whole]);
+        }
+        let mut assembler = stream(Framing::ModbusTcp);
+        let frames: Vec<SerialFrame> = TCP_ANSWER
+            .iter()
+            .filter_map(|byte| assembler.take(us(1), Origin::Bus, Character::new(*byte)))
+            .collect();
+        assert_eq!(frames.len(), 1, "no silence is waited for");
+    }
+
+    #[test]
+    fn a_header_that_cannot_be_is_ended_by_nothing_more() {
+        for length in [[0, 0], [0, 1], [1, 0], [0xFF, 0xFF]] {
+            let mut bytes = TCP_ANSWER;
+            bytes[4..6].copy_from_slice(&length);
+            // A length of 1 is possible: a unit and nothing else.
+            let expected: Vec<&[u8]> = match length {
+                [0, 1] => vec![&bytes[..7], &bytes[7..]],
+                _ => vec![&bytes],
+            };
+            assert_eq!(assembled(Framing::ModbusTcp, &[(1, &bytes)]), expected);
+        }
+        let (first, second) = TCP_ANSWER.split_at(9);
+        let late = [(1, first), (60_000, second)];
+        assert_eq!(assembled(Framing::ModbusTcp, &late), [first, second]);
+    }
+
+    #[test]
+    fn an_rtu_answer_says_how_long_it_is_unless_its_function_does_not() {
+        let twice = [RTU_ANSWER, RTU_ANSWER].concat();
+        assert_eq!(
+            assembled(Framing::Rtu, &[(1, &twice)]),
+            [RTU_ANSWER, RTU_ANSWER]
+        );
+        let refused: &[u8] = &[1, 0x86, 2, 0xC3, 0xA1];
+        let chunks = [(1, refused), (1, refused)];
+        assert_eq!(assembled(Framing::Rtu, &chunks), [refused, refused]);
+        let identification: &[u8] = &[1, 0x2B, 0x0E, 1];
+        let chunks = [(1, identification), (60_000, identification)];
+        assert_eq!(assembled(Framing::Rtu, &chunks), [identification; 2]);
     }
 }

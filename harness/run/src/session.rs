@@ -32,7 +32,7 @@ pub(crate) struct Received {
     pub(crate) message: Message,
 }
 
-/// A CAN frame, or bytes between silences.
+/// A CAN frame, or the bytes of a frame on a serial port.
 #[derive(Debug, Clone)]
 pub(crate) enum Message {
     Can(Frame),
@@ -72,6 +72,8 @@ pub(crate) struct Session<'a> {
     last_is_leaving: bool,
     /// The last activity on each port, for the silence before a serial frame.
     last_activity: Vec<Instant>,
+    /// The last transaction identifier of Modbus TCP.
+    transaction: u16,
 }
 
 impl<'a> Session<'a> {
@@ -84,10 +86,7 @@ impl<'a> Session<'a> {
         let assemblers: Vec<Option<Assembler>> = lane
             .ports()
             .iter()
-            .map(|port| match port.line {
-                Line::Serial(settings) => Some(Assembler::new(settings, port.has_bit_times())),
-                Line::Can { .. } | Line::Off | Line::Stream(_) => None,
-            })
+            .map(|port| Assembler::new(port.line, port.has_bit_times()))
             .collect();
         let last_activity = vec![now; assemblers.len()];
         Session {
@@ -105,6 +104,7 @@ impl<'a> Session<'a> {
             leaving: VecDeque::new(),
             last_is_leaving: false,
             last_activity,
+            transaction: 0,
         }
     }
 
@@ -150,7 +150,13 @@ impl<'a> Session<'a> {
         self.assemblers
             .get(port.0)?
             .as_ref()
-            .map(Assembler::settings)
+            .and_then(Assembler::settings)
+    }
+
+    /// The next transaction identifier of Modbus TCP.
+    pub(crate) fn next_transaction(&mut self) -> u16 {
+        self.transaction = self.transaction.wrapping_add(1);
+        self.transaction
     }
 
     /// The least silence between two frames on a serial port, if it says something of whoever kept it.

@@ -163,3 +163,58 @@ impl std::str::FromStr for Link {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_say_how_a_link_is_set() {
+        let link =
+            "serial:/dev/ttyUSB0?baud=19200&parity=even&stop-bits=2&echo=yes&uncertainty=5ms";
+        let Ok(Link {
+            kind,
+            target,
+            parameters,
+        }) = link.parse()
+        else {
+            panic!("{link} is a link");
+        };
+        assert_eq!((kind, target.as_str()), (LinkKind::Serial, "/dev/ttyUSB0"));
+        let expected = LinkParameters {
+            bit_rate: None,
+            baud: Some(19_200),
+            parity: Some(Parity::Even),
+            stop_bits: Some(2),
+            echo: Some(Echo::Yes),
+            framing: None,
+            uncertainty: Some(Duration::from_millis(5)),
+        };
+        assert_eq!(parameters, expected);
+    }
+
+    #[test]
+    fn a_tcp_link_says_which_frames_travel_on_it() {
+        let tcp = |text: &str| {
+            let link: Link = text.parse().ok()?;
+            Some((link.target, link.parameters.framing))
+        };
+        assert_eq!(tcp("tcp:plc:502"), Some(("plc:502".into(), None)));
+        assert_eq!(
+            tcp("tcp:[::1]:502?framing=rtu"),
+            Some(("[::1]:502".into(), Some(Framing::Rtu)))
+        );
+        assert_eq!(tcp("tcp:plc:502?framing=ascii"), None);
+        assert_eq!(tcp("tcp:plc?framing=rtu"), None);
+    }
+
+    #[test]
+    fn a_bit_rate_stands_after_an_at_sign() {
+        let link: Result<Link, NoLink> = "slcan:/dev/ttyACM0@250000".parse();
+        let link = link.unwrap();
+        assert_eq!(
+            (link.target.as_str(), link.parameters.bit_rate),
+            ("/dev/ttyACM0", Some(250_000))
+        );
+    }
+}

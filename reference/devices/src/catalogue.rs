@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fieldproof_link::{Participant, SerialSettings};
+use fieldproof_link::{Framing, Participant, SerialSettings};
 
 use crate::teco_jn5_cm_can::Behaviour as GatewayBehaviour;
 use crate::{canopen, modbus};
@@ -61,6 +61,8 @@ pub struct Settings {
     pub fault: Option<String>,
     /// The legal variant it is, by name.
     pub variant: Option<String>,
+    /// How Modbus frames are told apart, if its Modbus port is a connection and not a serial line.
+    pub framing: Option<Framing>,
 }
 
 /// One departure from one clause.

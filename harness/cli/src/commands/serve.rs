@@ -4,10 +4,11 @@ use std::path::Path;
 
 use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{DeviceKind, Medium, Settings};
-use fieldproof_link::real::serve::{Control, ServedPort, serve as run_server};
-use fieldproof_link::{Joined, Parity, Participant, SerialSettings, StopBits};
+use fieldproof_link::real::Port;
+use fieldproof_link::real::serve::{Control, serve as run_server};
+use fieldproof_link::{Connected, Joined, Parity, Participant, SerialSettings, StopBits};
 use fieldproof_report::{Problem, Severity};
-use fieldproof_suite::bench::Link;
+use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::device::{self, PortDescription};
 
 use crate::complaint::{Complaint, with_choice};
@@ -20,12 +21,16 @@ use crate::{links, stop};
 /// Runs a reference device on real links until interrupted.
 pub(crate) fn serve(options: &ServeOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
     let kind = kind(&options.device)?;
+    let on = options.on.iter().map(|text| split(text));
+    let on = on.collect::<Result<Vec<_>, Complaint>>()?;
+    let over_tcp = on.iter().find(|on| on.link.kind == LinkKind::Tcp);
     let settings = Settings {
         node: options.node,
         address: options.address,
         seed: options.seed,
         fault: options.fault.clone(),
         variant: options.variant.clone(),
+        framing: over_tcp.map(|on| links::framing(&on.link)),
     };
     let device = (kind.build)(&settings).map_err(|error| {
         Complaint::input(
@@ -33,11 +38,13 @@ pub(crate) fn serve(options: &ServeOptions, screen: &mut Screen) -> Result<Exit,
                 .help("`fieldproof faults` lists the faults, `fieldproof devices` the variants"),
         )
     })?;
-    let ports = open_ports(kind, &options.on)?;
-    let device = with_inverter(kind, device, &ports, options.seed);
+    let ports = open_ports(kind, &on)?;
+    let (numbers, ports): (Vec<usize>, Vec<Box<dyn Port>>) = ports.into_iter().unzip();
+    let device = with_inverter(kind, device, &numbers, options.seed);
+    let device = Box::new(Connected::new(device, numbers));
     let mut control = open_control(options.control.as_deref())?;
     let stop = stop::on_interrupt()?;
-    for (_, port) in &ports {
+    for port in &ports {
         let properties = port.properties();
         screen.print(&format!("{} is on {}\n", kind.name, properties.link));
     }
@@ -63,12 +70,12 @@ fn kind(name: &str) -> Result<&'static DeviceKind, Complaint> {
 fn with_inverter(
     kind: &DeviceKind,
     device: Box<dyn Participant>,
-    ports: &[ServedPort],
+    connected: &[usize],
     seed: u64,
 ) -> Box<dyn Participant> {
     let to_inverter = kind.ports.iter().position(|port| port.role == INVERTER);
     match to_inverter {
-        Some(number) if ports.iter().all(|(connected, _)| *connected != number) => {
+        Some(number) if !connected.contains(&number) => {
             Box::new(Joined::new(device, number, Box::new(Inverter::new(seed))))
         }
         _ => device,
@@ -88,11 +95,13 @@ fn open_control(path: Option<&Path>) -> Result<Box<dyn Control>, Complaint> {
     }
 }
 
+/// The number that a port has for the device, and what is open for it.
+type OpenPort = (usize, Box<dyn Port>);
+
 /// Opens every link for the port of the device that it names, or for the first free one that it can carry.
-fn open_ports(kind: &DeviceKind, on: &[String]) -> Result<Vec<ServedPort>, Complaint> {
-    let mut ports: Vec<ServedPort> = Vec::new();
-    for text in on {
-        let (role, link) = split(text)?;
+fn open_ports(kind: &DeviceKind, on: &[On<'_>]) -> Result<Vec<OpenPort>, Complaint> {
+    let mut ports: Vec<OpenPort> = Vec::new();
+    for On { text, role, link } in on {
         let carries = |number: &usize| match kind.ports[*number].medium {
             Medium::Can { .. } => link.kind.carries_can(),
             Medium::Serial(_) => link.kind.carries_serial(),
@@ -101,24 +110,31 @@ fn open_ports(kind: &DeviceKind, on: &[String]) -> Result<Vec<ServedPort>, Compl
         let is_free = |number: &usize| ports.iter().all(|(taken, _)| taken != number);
         let mut numbers = (0..kind.ports.len()).filter(is_meant);
         let Some(number) = numbers.find(|number| carries(number) && is_free(number)) else {
-            return Err(no_port(kind, text, role));
+            return Err(no_port(kind, text, *role));
         };
         let port = kind.ports[number];
-        let port = links::open_to_serve(port.role, &link, &described(port.medium))
+        let port = links::open_to_serve(port.role, link, &described(port.medium))
             .map_err(|error| Complaint::bench(error.to_string()))?;
         ports.push((number, port));
     }
     Ok(ports)
 }
 
+/// What a device is put on.
+struct On<'t> {
+    text: &'t str,
+    role: Option<&'t str>,
+    link: Link,
+}
+
 /// `can=socketcan:vcan0` names the port, `socketcan:vcan0` leaves it open.
-fn split(text: &str) -> Result<(Option<&str>, Link), Complaint> {
+fn split(text: &str) -> Result<On<'_>, Complaint> {
     let (role, link) = match text.split_once('=') {
         Some((role, link)) if !role.contains(':') => (Some(role), link),
         _ => (None, text),
     };
     match link.parse::<Link>() {
-        Ok(link) => Ok((role, link)),
+        Ok(link) => Ok(On { text, role, link }),
         Err(wrong) => {
             let problem = Problem::new(Severity::Error, wrong.message).note(wrong.expected);
             Err(Complaint::input(match wrong.help {

@@ -32,24 +32,18 @@ impl Control for () {
     fn done(&mut self, _: Result<(), NotOffered>) {}
 }
 
-/// A port of a served device: the number that it has for the device, and what is open for it.
-pub type ServedPort = (usize, Box<dyn Port>);
-
-/// Lets `device` take part in `ports` until `stop` is set. A port of the device that is not among them is connected
-/// to nothing.
+/// Lets `device` take part in `ports`, its port numbers in their order, until `stop` is set.
 ///
 /// # Errors
 /// [`LinkError`]: a link failed.
 pub fn serve(
     device: Box<dyn Participant>,
-    ports: Vec<ServedPort>,
+    ports: Vec<Box<dyn Port>>,
     control: &mut dyn Control,
     stop: &AtomicBool,
 ) -> Result<(), LinkError> {
-    let (numbers, ports) = ports.into_iter().unzip();
     let mut server = Server {
         device,
-        numbers,
         ports: Ports::new(ports, GivesUp::Silently),
         outbox: Outbox::default(),
         now: Instant::START,
@@ -75,8 +69,6 @@ pub fn serve(
 
 struct Server {
     device: Box<dyn Participant>,
-    /// The device's numbers of the ports.
-    numbers: Vec<usize>,
     ports: Ports<TheDevice>,
     outbox: Outbox,
     /// The last instant the device was told: for it, time never goes back.
@@ -98,21 +90,17 @@ impl Server {
 
     fn listen(&mut self) {
         while let Some(heard) = self.ports.next_heard(Instant::NEVER) {
-            let number = self.numbers[heard.port];
-            if heard.from.is_none() && self.device.line(number) != Line::Off {
+            if heard.from.is_none() && self.device.line(heard.port) != Line::Off {
                 self.now = self.now.max(heard.at);
                 self.device
-                    .receive(self.now, number, heard.what, &mut self.outbox);
+                    .receive(self.now, heard.port, heard.what, &mut self.outbox);
             }
         }
     }
 
     fn send(&mut self) -> Result<(), LinkError> {
-        for (number, what) in self.outbox.drain() {
-            let port = self.numbers.iter().position(|it| *it == number);
-            if let Some(port) = port
-                && self.device.line(number) != Line::Off
-            {
+        for (port, what) in self.outbox.drain() {
+            if self.device.line(port) != Line::Off {
                 self.ports.send(port, TheDevice, what)?;
             }
         }
@@ -122,7 +110,7 @@ impl Server {
     /// Sets the ports as the device sets itself, where a port can be set: its baud rate may be a register.
     fn follow_lines(&mut self) {
         for port in 0..self.ports.properties().len() {
-            let line = self.device.line(self.numbers[port]);
+            let line = self.device.line(port);
             let properties = &self.ports.properties()[port];
             if line != Line::Off && line != properties.line && properties.sets_bit_rate {
                 // What cannot be set stays; then the device is not understood, as on a real line.

@@ -250,6 +250,7 @@ impl Setup {
         let bench = Bench {
             fixed_rates: Default::default(),
             ports: ["can".to_owned()].into(),
+            modbus_tcp: [].into(),
             stimuli: [].into(),
             permits: self.permits.iter().copied().collect(),
             node: Some(1),

@@ -4,7 +4,7 @@ mod canopen;
 mod modbus;
 
 pub use canopen::describe_frame;
-pub use modbus::{Direction, describe_modbus};
+pub use modbus::{Direction, describe_modbus, describe_modbus_tcp};
 
 /// `D1 FF`
 fn spaced(bytes: &[u8]) -> String {

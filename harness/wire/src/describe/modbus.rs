@@ -1,7 +1,8 @@
-//! Modbus RTU ADUs.
+//! Modbus ADUs, RTU and TCP.
 
 use crate::modbus::pdu::DeviceIdentification;
 use crate::modbus::rtu::RtuAdu;
+use crate::modbus::tcp::{HEADER_LEN, RawTcp, TcpAdu};
 use crate::modbus::{Request, Response};
 use crate::violation::plural;
 use crate::{Rule, Violation};
@@ -19,22 +20,32 @@ pub enum Direction {
 
 /// What the RTU ADU `bytes` says: `read 2 holding registers from 00D4h`, `CRC wrong: 89EC, should be B9EC`.
 pub fn describe_modbus(bytes: &[u8], direction: Direction) -> String {
-    let described = RtuAdu::parse(bytes).and_then(|adu| {
-        let line = match direction {
-            Direction::Request => {
-                Request::parse(adu.pdu()).map(|request| describe_request(&request))
-            }
-            Direction::Response => {
-                Response::parse(adu.pdu()).map(|response| describe_response(&response))
-            }
-        };
-        // The PDU begins at byte 1.
-        line.map_err(|violation| Violation {
-            offset: violation.offset + 1,
-            ..violation
-        })
-    });
+    // The PDU begins at byte 1.
+    let described = RtuAdu::parse(bytes).and_then(|adu| describe_pdu(adu.pdu(), 1, direction));
     described.unwrap_or_else(malformed)
+}
+
+/// What the Modbus TCP ADU `bytes` says: `transaction 0007h: read 2 holding registers from 00D4h`.
+pub fn describe_modbus_tcp(bytes: &[u8], direction: Direction) -> String {
+    let described =
+        TcpAdu::parse(bytes).and_then(|adu| describe_pdu(adu.pdu(), HEADER_LEN, direction));
+    let described = described.unwrap_or_else(malformed);
+    match RawTcp(bytes).transaction() {
+        Some(transaction) => format!("transaction {transaction:04X}h: {described}"),
+        None => described,
+    }
+}
+
+/// What a PDU says that begins at byte `at` of its ADU.
+fn describe_pdu(pdu: &[u8], at: usize, direction: Direction) -> Result<String, Violation> {
+    let line = match direction {
+        Direction::Request => Request::parse(pdu).map(|request| describe_request(&request)),
+        Direction::Response => Response::parse(pdu).map(|response| describe_response(&response)),
+    };
+    line.map_err(|violation| Violation {
+        offset: violation.offset + at,
+        ..violation
+    })
 }
 
 fn malformed(violation: Violation) -> String {
@@ -263,12 +274,31 @@ mod tests {
         );
     }
 
+    #[test]
+    #[rustfmt::skip]
+    fn modbus_tcp_in_one_line() {
+        let request = [0, 7, 0, 0, 0, 6, 0x20, 3, 0, 0, 0, 1];
+        let cases: [(&[u8], Direction, &str); 5] = [
+            (&request, Direction::Request, "transaction 0007h: read 1 holding register from 0000h"),
+            (&[0, 7, 0, 0, 0, 5, 0x20, 3, 2, 0x0F, 0xB4], Direction::Response, "transaction 0007h: 1 register: 0FB4h"),
+            (&[1, 2, 0, 0, 0, 3, 1, 0x83, 2], Direction::Response, "transaction 0102h: exception 02 illegal data address"),
+            (&[0, 7, 0, 1, 0, 3, 1, 0x83, 2], Direction::Response, "transaction 0007h: malformed: range: found protocol 1 at byte 2, expected protocol 0"),
+            (&[0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 126], Direction::Request, "transaction 0007h: malformed: range: found 126 at byte 10, expected 1 to 125"),
+        ];
+        for (bytes, direction, line) in cases {
+            assert_eq!(describe_modbus_tcp(bytes, direction), line);
+        }
+        assert_eq!(describe_modbus_tcp(&request[..1], Direction::Request), "malformed: length: found 1 byte, expected 8 to 260 bytes");
+    }
+
     proptest! {
         #[test]
         fn any_bytes_have_one_line(bytes in proptest::collection::vec(any::<u8>(), 0..20), crc: bool) {
             let bytes = if crc { with_crc(&bytes) } else { bytes };
             for direction in [Direction::Request, Direction::Response] {
                 let line = describe_modbus(&bytes, direction);
+                prop_assert!(!line.is_empty() && !line.contains('\n'), "{}", line);
+                let line = describe_modbus_tcp(&bytes, direction);
                 prop_assert!(!line.is_empty() && !line.contains('\n'), "{}", line);
             }
         }

@@ -5,6 +5,7 @@
 
 mod crc;
 mod exception;
+mod extent;
 mod function;
 pub mod pdu;
 mod reader;
@@ -13,5 +14,6 @@ pub mod tcp;
 
 pub use crc::{crc16, crc16_bytes};
 pub use exception::ExceptionCode;
+pub use extent::{Extent, response_extent};
 pub use function::FunctionCode;
 pub use pdu::{Request, Response};

@@ -112,7 +112,7 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
     Ok(Box::new(HuachengSsts1 {
         slave,
         drive,
-        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed),
+        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed).over(settings.framing),
         powered: true,
     }))
 }

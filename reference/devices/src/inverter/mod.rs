@@ -5,7 +5,8 @@ mod registers;
 use std::collections::BTreeMap;
 
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::modbus::{Behaviour, ModbusSlave, Registers as _};
@@ -27,6 +28,13 @@ impl Inverter {
     pub fn behaving(behaviour: Behaviour, seed: u64) -> Inverter {
         Inverter {
             slave: ModbusSlave::new(InverterRegisters::default(), behaviour, seed),
+        }
+    }
+
+    /// The same on a connection, if `framing` says how frames are told apart there.
+    pub fn over(self, framing: Option<Framing>) -> Inverter {
+        Inverter {
+            slave: self.slave.over(framing),
         }
     }
 

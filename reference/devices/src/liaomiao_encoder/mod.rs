@@ -153,7 +153,7 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
     let slave = Slave::new(profile(), behaviour.canopen, factory, &mut shaft);
     Ok(Box::new(LiaomiaoEncoder {
         slave,
-        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed),
+        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed).over(settings.framing),
         powered: true,
         speed_sign,
     }))

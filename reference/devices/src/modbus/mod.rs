@@ -1,4 +1,4 @@
-//! Modbus RTU as the reference devices speak it: a slave, a small master, and what they may be made to do wrong.
+//! Modbus as the reference devices speak it, RTU and TCP: a slave, a small master, and what they may be made to do wrong.
 //!
 //! Nothing here knows a clock: characters come in with the instant their last bit ended, frames go out from the instant
 //! the caller was told to wake at.
@@ -11,6 +11,7 @@ pub mod master;
 #[cfg(test)]
 pub(crate) mod script;
 pub mod slave;
+pub mod stream;
 
 pub use behaviour::{
     AddressChangeReply, Behaviour, ByteCount, CrcOrder, EchoedValue, ExceptionCodes, SpeedSign,

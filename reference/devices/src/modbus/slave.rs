@@ -1,12 +1,13 @@
-//! A Modbus RTU slave around a set of registers.
+//! A Modbus slave around a set of registers: on a serial line, or on a connection.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fieldproof_link::{Character, Instant, Line, SerialSettings};
+use fieldproof_link::{Character, Framing, Instant, Line, SerialSettings};
 
 use super::crc;
 use super::framing::{Framer, Received};
+use super::stream::{Request, StreamFramer};
 use super::{Behaviour, ByteCount, EchoedValue};
 
 const READ_HOLDING: u8 = 0x03;
@@ -88,6 +89,8 @@ pub struct ModbusSlave<R> {
     behaviour: Behaviour,
     line: SerialSettings,
     framer: Framer,
+    /// In place of the line and its framer, if it is at the end of a connection.
+    stream: Option<StreamFramer>,
     chance: fastrand::Rng,
     reply: Option<(Instant, Vec<u8>)>,
     sending_until: Option<Instant>,
@@ -102,9 +105,18 @@ impl<R: Registers> ModbusSlave<R> {
             registers,
             behaviour,
             line,
+            stream: None,
             chance: fastrand::Rng::with_seed(seed),
             reply: None,
             sending_until: None,
+        }
+    }
+
+    /// The same on a connection, if `framing` says how frames are told apart there.
+    pub fn over(self, framing: Option<Framing>) -> ModbusSlave<R> {
+        ModbusSlave {
+            stream: framing.map(StreamFramer::new),
+            ..self
         }
     }
 
@@ -120,7 +132,10 @@ impl<R: Registers> ModbusSlave<R> {
 
     /// How its line is set now: a new bit rate is in effect once the answer that acknowledged it has left.
     pub fn line(&self) -> Line {
-        Line::Serial(self.line)
+        match &self.stream {
+            Some(stream) => Line::Stream(stream.framing()),
+            None => Line::Serial(self.line),
+        }
     }
 
     /// Forgets what it was receiving or about to send, and sets its line as the registers say: after power-on, or when a
@@ -130,11 +145,16 @@ impl<R: Registers> ModbusSlave<R> {
         self.sending_until = None;
         self.line = self.registers.serial();
         self.framer = framer(self.line, &self.behaviour);
+        self.stream = self.stream.take().map(|it| StreamFramer::new(it.framing()));
     }
 
     /// `character` ended at `now`. While it has an answer to send it does not listen, and what it heard only the end of
-    /// is no frame.
+    /// is no frame. On a connection requests wait for their turn.
     pub fn receive(&mut self, now: Instant, character: Character) {
+        if let Some(stream) = &mut self.stream {
+            stream.receive(now, character);
+            return;
+        }
         let heard = Character {
             spoilt: character.spoilt || self.is_busy(now),
             ..character
@@ -145,6 +165,9 @@ impl<R: Registers> ModbusSlave<R> {
     /// When it wants to be woken.
     pub fn wake_at(&self) -> Option<Instant> {
         let reply = self.reply.as_ref().map(|(at, _)| *at);
+        if let Some(stream) = &self.stream {
+            return reply.or_else(|| stream.wake_at());
+        }
         [self.framer.wake_at(), reply, self.sending_until]
             .into_iter()
             .flatten()
@@ -153,6 +176,9 @@ impl<R: Registers> ModbusSlave<R> {
 
     /// The instant it asked for has come; what it sends, if anything.
     pub fn wake(&mut self, now: Instant) -> Option<Vec<Character>> {
+        if self.stream.is_some() {
+            return self.wake_on_connection(now);
+        }
         self.sending_until.take_if(|until| *until <= now);
         let answer = self
             .framer
@@ -167,6 +193,17 @@ impl<R: Registers> ModbusSlave<R> {
         let (_, frame) = self.reply.take_if(|(at, _)| *at <= now)?;
         let length = u32::try_from(frame.len()).unwrap_or(u32::MAX);
         self.sending_until = Some(now + self.line.character_time() * length);
+        Some(frame.into_iter().map(Character::new).collect())
+    }
+
+    /// One request after the other.
+    fn wake_on_connection(&mut self, now: Instant) -> Option<Vec<Character>> {
+        if self.reply.is_none() {
+            let request = self.stream.as_mut()?.wake(now)?;
+            let answer = self.answer_request(&request)?;
+            self.reply = Some((now + self.delay(), answer));
+        }
+        let (_, frame) = self.reply.take_if(|(at, _)| *at <= now)?;
         Some(frame.into_iter().map(Character::new).collect())
     }
 
@@ -198,12 +235,26 @@ impl<R: Registers> ModbusSlave<R> {
         if received.flawed || !(intact || self.behaviour.stale_crc_accepted) {
             return None;
         }
-        let body = match self.registers.command(request, &self.behaviour) {
-            Some(Command::Silent) => return None,
-            Some(Command::Answer(body)) => body,
-            None => self.ordinary_answer(request)?,
-        };
+        let body = self.answer_body(request)?;
         Some(crc::with_crc(body, self.behaviour.crc_order))
+    }
+
+    /// The same on a connection.
+    fn answer_request(&mut self, request: &Request) -> Option<Vec<u8>> {
+        if !(request.intact || self.behaviour.stale_crc_accepted) {
+            return None;
+        }
+        let body = self.answer_body(&request.body)?;
+        Some(request.answered(body, self.behaviour.crc_order))
+    }
+
+    /// Address, function and data of the answer.
+    fn answer_body(&mut self, request: &[u8]) -> Option<Vec<u8>> {
+        match self.registers.command(request, &self.behaviour) {
+            Some(Command::Silent) => None,
+            Some(Command::Answer(body)) => Some(body),
+            None => self.ordinary_answer(request),
+        }
     }
 
     /// The answer to a request on the own address or to all, without its CRC.

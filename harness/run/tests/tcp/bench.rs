@@ -1,0 +1,161 @@
+//! What is played, and on what.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use fieldproof_devices::{Settings, kind};
+use fieldproof_link::real::serve::serve;
+use fieldproof_link::real::{NoStimuli, RealLane, Tcp, TcpServer};
+use fieldproof_link::{Connected, Framing};
+use fieldproof_record::{CaseFinished, Event};
+use fieldproof_run::{Bench, LaneJob, LaneOutcome, play_lane};
+use fieldproof_suite::device::DeviceDescription;
+use fieldproof_suite::model::Effect;
+use fieldproof_suite::{SourceFile, Suite, load, load_device};
+
+/// What a run gave.
+pub(crate) struct Played {
+    pub(crate) outcome: LaneOutcome,
+    pub(crate) events: Vec<Event>,
+}
+
+impl Played {
+    pub(crate) fn cases(&self) -> Vec<&CaseFinished> {
+        let finished = self.events.iter().filter_map(|event| match event {
+            Event::CaseFinished(case) => Some(case.as_ref()),
+            _ => None,
+        });
+        finished.collect()
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn source(path: &str) -> SourceFile {
+    SourceFile {
+        path: path.to_owned(),
+        text: std::fs::read_to_string(root().join(path)).unwrap(),
+    }
+}
+
+/// The description of a device that is shipped.
+pub(crate) fn description(device: &str) -> DeviceDescription {
+    load_device(&source(&format!("fixtures/devices/{device}/device.yaml"))).unwrap()
+}
+
+/// Every Modbus suite for a device that is shipped.
+pub(crate) fn modbus_suites(device: &str) -> Vec<Suite> {
+    let files = [
+        source("suites/modbus/crc.yaml"),
+        source("suites/modbus/exceptions.yaml"),
+        source("suites/modbus/framing.yaml"),
+        source(&format!("suites/devices/{device}/modbus.yaml")),
+    ];
+    let loaded = load(&files);
+    assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
+    loaded.suites
+}
+
+/// The cases of a suite in words.
+pub(crate) fn suites_of(cases: &str) -> Vec<Suite> {
+    let head = "language: 1\nsuite: test\ntitle: A test\nprotocol: modbus\nsources:\n  book: {document: A book}\ncases:\n";
+    let loaded = load(&[SourceFile {
+        path: "test.yaml".into(),
+        text: format!("{head}{cases}"),
+    }]);
+    assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
+    loaded.suites
+}
+
+/// A reference device on a TCP port of its own, until it is dropped.
+pub(crate) struct Served {
+    pub(crate) host_port: String,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Served {
+    /// Serves the serial port of a device.
+    pub(crate) fn start(device: &str, framing: Framing) -> Served {
+        let kind = kind(device).unwrap();
+        let settings = Settings {
+            framing: Some(framing),
+            ..Settings::default()
+        };
+        let participant = (kind.build)(&settings).unwrap();
+        let serial = kind.ports.iter().position(|port| port.role == "serial");
+        let connected = Connected::new(participant, vec![serial.unwrap()]);
+        let server = TcpServer::listen("serial", "127.0.0.1:0", framing).unwrap();
+        let host_port = server.address().to_string();
+        let stop = Arc::new(AtomicBool::new(false));
+        let told = Arc::clone(&stop);
+        let thread = thread::spawn(move || {
+            serve(Box::new(connected), vec![Box::new(server)], &mut (), &told).unwrap();
+        });
+        Served {
+            host_port,
+            stop,
+            thread: Some(thread),
+        }
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let ended = thread.join();
+            assert!(ended.is_ok() || thread::panicking(), "the server failed");
+        }
+    }
+}
+
+/// Plays suites on whatever listens there; everything is permitted.
+pub(crate) fn play(
+    host_port: &str,
+    framing: Framing,
+    device: &DeviceDescription,
+    suites: &[Suite],
+) -> Played {
+    let port = Tcp::open("serial", host_port, framing, Duration::from_secs(2), None).unwrap();
+    let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
+    let is_tcp = framing == Framing::ModbusTcp;
+    let bench = Bench {
+        ports: ["serial".to_owned()].into(),
+        modbus_tcp: is_tcp.then(|| "serial".to_owned()).into_iter().collect(),
+        stimuli: [].into(),
+        permits: [
+            Effect::Writes,
+            Effect::Persists,
+            Effect::Readdresses,
+            Effect::Moves,
+            Effect::Resets,
+            Effect::DisturbsBus,
+        ]
+        .into(),
+        node: None,
+        address: device.modbus.as_ref().map(|modbus| modbus.address),
+    };
+    let job = LaneJob {
+        tool: "test",
+        name: "served",
+        device,
+        dictionary: None,
+        bench: &bench,
+        suites,
+        selects: &|_| true,
+        strict: false,
+        inspects_device: false,
+        fault: None,
+        variant: None,
+        seed: 0,
+    };
+    let mut events = Vec::new();
+    let outcome = play_lane(&job, &mut lane, &mut events, &AtomicBool::new(false));
+    Played { outcome, events }
+}

@@ -1,0 +1,269 @@
+//! tokio-modbus: its server against our engine, its client against our reference device.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test may fail this way"
+)]
+
+use std::collections::BTreeMap;
+use std::future::{Ready, ready};
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Duration;
+
+use fieldproof_devices::{Settings, kind};
+use fieldproof_link::real::serve::serve;
+use fieldproof_link::real::{NoStimuli, RealLane, Tcp, TcpServer};
+use fieldproof_link::{Connected, Framing};
+use fieldproof_record::{Event, Verdict};
+use fieldproof_run::{Bench, LaneJob, play_lane};
+use fieldproof_suite::device::{DeviceDescription, Feature};
+use fieldproof_suite::model::Effect;
+use fieldproof_suite::{SourceFile, Suite, load, load_device};
+use tokio::net::TcpListener;
+use tokio_modbus::client::{Reader as _, Writer as _, tcp};
+use tokio_modbus::server::Service;
+use tokio_modbus::server::tcp::{Server, accept_tcp_connection};
+use tokio_modbus::{ExceptionCode, Request, Response, Slave};
+
+/// Sixteen registers that can be read and written.
+#[derive(Clone)]
+struct Registers(Arc<Mutex<BTreeMap<u16, u16>>>);
+
+impl Registers {
+    fn new() -> Registers {
+        Registers(Arc::new(Mutex::new(
+            (0..16).map(|it| (it, 100 + it)).collect(),
+        )))
+    }
+
+    fn answer(&self, request: Request<'static>) -> Result<Response, ExceptionCode> {
+        let mut registers = self.0.lock().unwrap();
+        match request {
+            Request::ReadHoldingRegisters(_, count) if !(1..=125).contains(&count) => {
+                Err(ExceptionCode::IllegalDataValue)
+            }
+            Request::ReadHoldingRegisters(first, count) => {
+                let read = (0..count).map(|it| registers.get(&first.checked_add(it)?).copied());
+                let read: Option<Vec<u16>> = read.collect();
+                let read = read.ok_or(ExceptionCode::IllegalDataAddress)?;
+                Ok(Response::ReadHoldingRegisters(read))
+            }
+            Request::WriteSingleRegister(register, value) => {
+                let held = registers.get_mut(&register);
+                *held.ok_or(ExceptionCode::IllegalDataAddress)? = value;
+                Ok(Response::WriteSingleRegister(register, value))
+            }
+            Request::WriteMultipleRegisters(first, values) => {
+                for (register, value) in (first..).zip(values.iter()) {
+                    let held = registers.get_mut(&register);
+                    *held.ok_or(ExceptionCode::IllegalDataAddress)? = *value;
+                }
+                Ok(Response::WriteMultipleRegisters(first, values.len() as u16))
+            }
+            _ => Err(ExceptionCode::IllegalFunction),
+        }
+    }
+}
+
+impl Service for Registers {
+    type Request = Request<'static>;
+    type Response = Response;
+    type Exception = ExceptionCode;
+    type Future = Ready<Result<Response, ExceptionCode>>;
+
+    fn call(&self, request: Request<'static>) -> Self::Future {
+        ready(self.answer(request))
+    }
+}
+
+fn runtime() -> tokio::runtime::Runtime {
+    let mut builder = tokio::runtime::Builder::new_current_thread();
+    builder.enable_all().build().unwrap()
+}
+
+/// Starts a server of tokio-modbus in a thread that ends with the test program.
+fn start_server() -> SocketAddr {
+    let (tell, told) = std::sync::mpsc::channel();
+    thread::spawn(move || {
+        runtime().block_on(async move {
+            let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+            tell.send(listener.local_addr().unwrap()).unwrap();
+            let registers = Registers::new();
+            let connected = |stream, address| {
+                let registers = registers.clone();
+                async move { accept_tcp_connection(stream, address, |_| Ok(Some(registers.clone()))) }
+            };
+            let server = Server::new(listener);
+            server.serve(&connected, |_| {}).await.unwrap();
+        });
+    });
+    told.recv().unwrap()
+}
+
+fn source(path: &str) -> SourceFile {
+    let root: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    SourceFile {
+        path: path.to_owned(),
+        text: std::fs::read_to_string(root.join(path)).unwrap(),
+    }
+}
+
+fn loaded(files: &[SourceFile]) -> Vec<Suite> {
+    let loaded = load(files);
+    assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
+    loaded.suites
+}
+
+/// A device that has Modbus TCP and promises nothing more.
+fn plain_device() -> DeviceDescription {
+    let encoder = source("fixtures/devices/liaomiao-encoder/device.yaml");
+    let mut device = load_device(&encoder).unwrap();
+    device.device = "plain".into();
+    device.deviates.clear();
+    device.features = [Feature::ModbusTcp].into_iter().collect();
+    device
+}
+
+const READ_AND_WRITE: &str = "
+language: 1
+suite: plain
+title: Reads and writes
+protocol: modbus
+sources:
+  modbus: {document: MODBUS application protocol V1.1b3}
+cases:
+  - case: read
+    title: Reads registers
+    cite: [modbus]
+    steps:
+      - modbus: {read-holding: {address: 0, count: 16}}
+      - modbus: {read-holding: {address: 3, count: 2}, expect: {registers: [103, 104]}}
+  - case: write
+    title: Writes registers, which are put back
+    cite: [modbus]
+    effects: [writes]
+    steps:
+      - modbus: {write-single: {address: 2, value: 7}}
+      - modbus: {write-multiple: {address: 4, values: [8, 9]}}
+      - modbus: {read-holding: {address: 2, count: 4}, expect: {registers: [7, 103, 8, 9]}}
+  - case: put-back
+    title: They are what they were
+    cite: [modbus]
+    steps:
+      - modbus: {read-holding: {address: 2, count: 4}, expect: {registers: [102, 103, 104, 105]}}
+  - case: no-such-register
+    title: A register that is not there
+    cite: [modbus]
+    steps:
+      - modbus: {read-holding: {address: 15, count: 2}, expect: {exception: illegal-data-address}}
+";
+
+#[test]
+fn our_engine_and_its_server() {
+    let address = start_server();
+    let wait = Duration::from_secs(2);
+    let port = Tcp::open(
+        "serial",
+        &address.to_string(),
+        Framing::ModbusTcp,
+        wait,
+        None,
+    )
+    .unwrap();
+    let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
+    let device = plain_device();
+    let bench = Bench {
+        fixed_rates: Default::default(),
+        ports: ["serial".to_owned()].into(),
+        modbus_tcp: ["serial".to_owned()].into(),
+        stimuli: [].into(),
+        permits: [Effect::Writes, Effect::DisturbsBus].into(),
+        node: None,
+        address: Some(1),
+    };
+    let suites = loaded(&[
+        SourceFile {
+            path: "plain.yaml".into(),
+            text: READ_AND_WRITE.to_owned(),
+        },
+        source("suites/modbus/exceptions.yaml"),
+        source("suites/modbus/framing.yaml"),
+        source("suites/modbus/crc.yaml"),
+    ]);
+    let job = LaneJob {
+        tool: "test",
+        name: "tokio-modbus",
+        device: &device,
+        dictionary: None,
+        bench: &bench,
+        suites: &suites,
+        selects: &|_| true,
+        strict: false,
+        inspects_device: false,
+        fault: None,
+        variant: None,
+        seed: 0,
+    };
+    let mut events = Vec::new();
+    let outcome = play_lane(&job, &mut lane, &mut events, &AtomicBool::new(false));
+    for event in &events {
+        if let Event::CaseFinished(case) = event {
+            let is_fine = matches!(case.verdict, Verdict::Pass | Verdict::Skipped);
+            assert!(is_fine, "{}: {:#?}", case.id, case.failures);
+        }
+    }
+    assert_eq!(outcome.stopped, None);
+    // The four above, and the exceptions.
+    assert!(outcome.counts.pass >= 4 + 5, "{:?}", outcome.counts);
+}
+
+#[test]
+fn its_client_and_our_encoder() {
+    let settings = Settings {
+        framing: Some(Framing::ModbusTcp),
+        ..Settings::default()
+    };
+    let encoder = kind("liaomiao-encoder").unwrap();
+    let connected = Connected::new((encoder.build)(&settings).unwrap(), vec![1]);
+    let server = TcpServer::listen("serial", "127.0.0.1:0", Framing::ModbusTcp).unwrap();
+    let address = server.address();
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let served =
+            scope.spawn(|| serve(Box::new(connected), vec![Box::new(server)], &mut (), &stop));
+        let asked = scope.spawn(move || runtime().block_on(ask_encoder(address)));
+        let asked = asked.join();
+        stop.store(true, Ordering::Relaxed);
+        served.join().unwrap().unwrap();
+        asked.unwrap();
+    });
+}
+
+async fn ask_encoder(address: SocketAddr) {
+    let mut client = tcp::connect_slave(address, Slave(32)).await.unwrap();
+    let own_address = client.read_holding_registers(1, 1).await.unwrap();
+    assert_eq!(own_address, Ok(vec![32]));
+    let before = client.read_holding_registers(14, 1).await.unwrap().unwrap();
+    client.write_single_register(14, 5).await.unwrap().unwrap();
+    assert_eq!(
+        client.read_holding_registers(14, 1).await.unwrap(),
+        Ok(vec![5])
+    );
+    client
+        .write_multiple_registers(14, &before)
+        .await
+        .unwrap()
+        .unwrap();
+    assert_eq!(
+        client.read_holding_registers(14, 1).await.unwrap(),
+        Ok(before)
+    );
+    let hole = client.read_holding_registers(0xFFF0, 1).await.unwrap();
+    assert_eq!(hole, Err(ExceptionCode::IllegalDataAddress));
+}
