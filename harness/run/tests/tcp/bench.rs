@@ -126,6 +126,7 @@ pub(crate) fn play(
     let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
     let is_tcp = framing == Framing::ModbusTcp;
     let bench = Bench {
+        fixed_rates: [].into(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: is_tcp.then(|| "serial".to_owned()).into_iter().collect(),
         stimuli: [].into(),
