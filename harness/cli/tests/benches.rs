@@ -6,7 +6,8 @@ mod support;
 
 use support::Folder;
 
-const DEVICES: [(&str, &str); 4] = [
+const DEVICES: [(&str, &str); 5] = [
+    ("canopen-complete", "slave"),
     ("huacheng-ssts1", "drive"),
     ("kinco-servo", "drive"),
     ("liaomiao-encoder", "encoder"),
@@ -254,7 +255,7 @@ fn device_without_a_reference_device_is_checked_and_not_simulated() {
     let ran = folder.run(&["check", "drive"]);
     assert_eq!(ran.exit(), Some(0), "{}", ran.error());
     assert!(
-        ran.out().contains("5 devices: no mistakes"),
+        ran.out().contains("6 devices: no mistakes"),
         "{}",
         ran.out()
     );

@@ -5,6 +5,7 @@
 //! legal [`Variant`]s and its [`Fault`]s, each of which departs from one clause and from nothing else.
 
 pub mod canopen;
+mod canopen_complete;
 pub mod catalogue;
 mod drive;
 mod huacheng_ssts1;
@@ -28,6 +29,7 @@ use fieldproof_link::Participant;
 /// Every kind of reference device, by name.
 pub fn kinds() -> &'static [DeviceKind] {
     &[
+        canopen_complete::KIND,
         huacheng_ssts1::KIND,
         kinco_servo::KIND,
         liaomiao_encoder::KIND,

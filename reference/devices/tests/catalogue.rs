@@ -45,6 +45,7 @@ fn names_are_unique_and_every_fault_says_what_it_breaks() {
     assert_eq!(
         names,
         [
+            "canopen-complete",
             "huacheng-ssts1",
             "kinco-servo",
             "liaomiao-encoder",

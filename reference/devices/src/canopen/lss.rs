@@ -124,8 +124,10 @@ impl Slave {
         index: u8,
     ) {
         let rate = abilities.bit_rates.get(usize::from(index));
-        let rate =
-            rate.filter(|_| selector == 0 && self.behaviour.lss_refused_index != Some(index));
+        let reserved = 0;
+        let rate = rate.filter(|rate| {
+            **rate != reserved && selector == 0 && self.behaviour.lss_refused_index != Some(index)
+        });
         let refused = rate.is_none() && self.behaviour.lss_configuration_checked;
         self.answer_lss(now, [0x13, u8::from(refused), 0, 0, 0, 0, 0, 0]);
         if let Some(rate) = rate {

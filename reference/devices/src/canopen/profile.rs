@@ -42,7 +42,7 @@ pub(crate) enum TransmitEvent {
 /// What an LSS slave can do.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LssAbilities {
-    /// Bit rates in bits a second by their index in table 0.
+    /// Bit rates in bits a second by their index in table 0; 0 at an index that is reserved.
     pub(crate) bit_rates: &'static [u32],
 }
 

@@ -340,7 +340,9 @@ impl Slave {
     /// # Errors
     /// [`NotOffered`]: it is none of them.
     pub(crate) fn set_bit_rate(&mut self, rate: i64, rates: &[u32]) -> Result<(), NotOffered> {
-        let rate = u32::try_from(rate).ok().filter(|rate| rates.contains(rate));
+        let rate = u32::try_from(rate)
+            .ok()
+            .filter(|rate| *rate != 0 && rates.contains(rate));
         self.memory.bit_rate = rate.ok_or(NotOffered)?;
         self.pending_bit_rate = self.memory.bit_rate;
         self.bit_rate = self.memory.bit_rate;

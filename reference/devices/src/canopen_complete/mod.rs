@@ -1,0 +1,160 @@
+//! A slave that has all that CiA 301 and CiA 305 give one: 500 kbit/s, node 10. It is no vendor's.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use fieldproof_dictionary::{Dictionary, eds};
+use fieldproof_link::{
+    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+};
+
+use crate::canopen::{self, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults};
+use crate::catalogue::{
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
+};
+
+mod values;
+
+use values::Values;
+
+const NODE: u8 = 10;
+const BIT_RATE: u32 = 500_000;
+/// Table 0 of CiA 305; index 5 is reserved.
+const BIT_RATES: &[u32] = &[
+    1_000_000, 800_000, 500_000, 250_000, 125_000, 0, 50_000, 20_000, 10_000,
+];
+const PORT: usize = 0;
+
+/// The faults of this device alone.
+const OWN_FAULTS: &[Fault] = &[
+    faults::TOGGLE_NOT_ALTERNATED,
+    faults::SDO_ANSWERED_IN_STOPPED,
+    faults::GUARDING_TOGGLE_STUCK,
+];
+const FAULTS: [Fault; faults::COMMON.len() + OWN_FAULTS.len()] =
+    all_of(&[faults::COMMON, OWN_FAULTS]);
+
+/// What can be built.
+pub(crate) const KIND: DeviceKind = DeviceKind {
+    name: "canopen-complete",
+    title: "A CANopen slave that has everything",
+    ports: &[PortKind {
+        role: "can",
+        medium: Medium::Can { bit_rate: BIT_RATE },
+    }],
+    faults: &FAULTS,
+    variants: &[
+        canopen::variants::NO_TPDO_ON_START,
+        canopen::variants::REMOTE_FRAMES_IGNORED,
+        canopen::variants::HEARTBEAT_AT_ONCE,
+        canopen::variants::SLOW,
+    ],
+    build,
+};
+
+static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
+    eds::read(include_str!(
+        "../../../../fixtures/devices/canopen-complete/canopen-complete.eds"
+    ))
+    .dictionary
+});
+
+fn profile() -> Profile {
+    Profile {
+        dictionary: &DICTIONARY,
+        boot_time: Duration::from_millis(5),
+        produces_sync: true,
+        guarding: true,
+        transmit_event: TransmitEvent::Change,
+        lowest_transmit_type: 0,
+        lss: Some(LssAbilities {
+            bit_rates: BIT_RATES,
+        }),
+        saved_on_write: &[],
+        node_object: None,
+        bit_rate_object: None,
+        twins: &[],
+    }
+}
+
+fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
+    let behaviour = KIND.behaviour(Behaviour::default(), settings)?;
+    let factory = Factory {
+        node: settings.node.unwrap_or(NODE),
+        bit_rate: BIT_RATE,
+        seed: settings.seed,
+    };
+    let mut values = Values::default();
+    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut values);
+    Ok(Box::new(Complete { slave, values }))
+}
+
+/// The slave on its bus.
+#[derive(Debug)]
+struct Complete {
+    slave: Slave,
+    values: Values,
+}
+
+impl Participant for Complete {
+    fn line(&self, _: usize) -> Line {
+        self.slave.line()
+    }
+
+    fn receive(&mut self, now: Instant, _: usize, reception: Reception, _: &mut Outbox) {
+        if let Reception::Frame(frame) = reception {
+            self.slave.receive(now, &frame, &mut self.values);
+        }
+    }
+
+    fn wake_at(&self) -> Option<Instant> {
+        self.slave.wake_at()
+    }
+
+    fn wake(&mut self, now: Instant, out: &mut Outbox) {
+        self.slave.wake(now, PORT, &mut self.values, out);
+    }
+
+    fn stimulate(
+        &mut self,
+        now: Instant,
+        stimulus: &Stimulus,
+        _: &mut Outbox,
+    ) -> Result<(), NotOffered> {
+        match stimulus {
+            Stimulus::Power { on } => self.slave.power(now, *on, &mut self.values),
+            Stimulus::ProcessValue { name, value } => {
+                self.slave.set_process_value(name, *value)?;
+            }
+            Stimulus::Condition { name, active } => {
+                self.values
+                    .set_condition(now, name, *active, &mut self.slave)?;
+            }
+            Stimulus::Setting { name, value } => match name.as_str() {
+                "node" => self.slave.set_node(now, *value)?,
+                "bit-rate" => self.slave.set_bit_rate(*value, BIT_RATES)?,
+                _ => return Err(NotOffered),
+            },
+        }
+        Ok(())
+    }
+
+    fn offers(&self) -> Vec<StimulusKind> {
+        vec![
+            StimulusKind::Power,
+            StimulusKind::ProcessValue,
+            StimulusKind::Condition,
+            StimulusKind::Setting,
+        ]
+    }
+
+    fn state(&self) -> BTreeMap<String, String> {
+        let mut state = self.slave.state();
+        state.extend(self.values.state());
+        state
+    }
+}
+
+#[cfg(test)]
+mod tests;
