@@ -1,20 +1,24 @@
-//! The simulated bench: a reference device on simulated buses, with what its description connects to it.
+//! The bench: a reference device on simulated buses, or a device on real links, with what its description connects to it.
 
 use std::collections::BTreeSet;
 use std::fmt;
 
 use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{Medium, Settings, UnknownFault};
+use fieldproof_link::real::{NoStimuli, OpenError, RealLane, Stimuli};
 use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_link::{
     Framing, Lane, Line, Parity, Participant, PortIndex, PortProperties, SerialSettings,
     StimulusKind, StopBits,
 };
 use fieldproof_run::Bench;
+use fieldproof_suite::bench::{self, LinkKind};
 use fieldproof_suite::device::{self, PortDescription};
 use fieldproof_suite::model::{Effect, StimulusName};
 
-use crate::library::Device;
+use crate::library::{Device, Place};
+use crate::links;
+use crate::operator::{ByCommand, ByHand, Operator};
 
 /// How the reference device is built.
 #[derive(Debug, Clone, Default)]
@@ -34,12 +38,15 @@ pub enum NotConnected {
     Unknown(UnknownFault),
     /// There is no reference device of this name that could be simulated.
     NotSimulated(String),
+    /// A link cannot be opened.
+    Link(OpenError),
 }
 
 impl fmt::Display for NotConnected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             NotConnected::Unknown(error) => error.fmt(f),
+            NotConnected::Link(error) => error.fmt(f),
             NotConnected::NotSimulated(name) => {
                 write!(f, "there is no reference device \"{name}\" to simulate it")
             }
@@ -48,6 +55,70 @@ impl fmt::Display for NotConnected {
 }
 
 impl std::error::Error for NotConnected {}
+
+/// Connects `device` as its bench says.
+///
+/// # Errors
+/// It has no such fault or variant, or no reference device, or a link cannot be opened.
+pub(crate) fn open(
+    device: &Device,
+    behaviour: &Behaviour,
+    operator: &Operator,
+) -> Result<Box<dyn Lane>, NotConnected> {
+    match &device.place {
+        Some(place) if !device.is_simulated() => {
+            let lane = open_real(device, place, behaviour.seed, operator)?;
+            Ok(Box::new(lane))
+        }
+        _ => Ok(Box::new(connect(device, behaviour)?)),
+    }
+}
+
+fn open_real(
+    device: &Device,
+    place: &Place,
+    seed: u64,
+    operator: &Operator,
+) -> Result<RealLane, NotConnected> {
+    let mut ports = Vec::new();
+    let mut companions = Vec::new();
+    for (role, link) in &place.links {
+        let Some(described) = device.description.ports.get(role) else {
+            continue;
+        };
+        ports.push(links::open(role, link, described).map_err(NotConnected::Link)?);
+        if let PortDescription::Serial {
+            companion: Some(name),
+            ..
+        } = described
+        {
+            let port = PortIndex(ports.len() - 1);
+            companions.extend(companion(name, seed).map(|it| (port, it)));
+        }
+    }
+    let mut lane = RealLane::new(ports, stimuli(place, operator));
+    for (port, companion) in companions {
+        lane.attach(port, companion);
+    }
+    Ok(lane)
+}
+
+/// Only what the bench lists, by its command or else by the operator's hand.
+fn stimuli(place: &Place, operator: &Operator) -> Box<dyn Stimuli> {
+    let offers = offered(place);
+    if let Some(command) = &place.stimulus_command {
+        return Box::new(ByCommand::new(command.clone(), offers));
+    }
+    match ByHand::new(operator, &place.name, offers) {
+        Some(by_hand) => Box::new(by_hand),
+        None => Box::new(NoStimuli),
+    }
+}
+
+fn offered(place: &Place) -> Vec<StimulusKind> {
+    let there = place.stimuli.iter().flatten();
+    there.map(|name| stimulus_kind(*name)).collect()
+}
 
 /// Connects `device` to simulated buses, set as its description says, with all that stands around it.
 ///
@@ -111,7 +182,7 @@ fn companion(name: &str, seed: u64) -> Option<Box<dyn Participant>> {
     (name == COMPANIONS[0]).then(|| Box::new(Inverter::new(seed)) as Box<dyn Participant>)
 }
 
-fn serial(baud: u32, parity: device::Parity, stop_bits: u8) -> SerialSettings {
+pub(crate) fn serial(baud: u32, parity: device::Parity, stop_bits: u8) -> SerialSettings {
     SerialSettings {
         baud,
         parity: match parity {
@@ -130,17 +201,29 @@ fn serial(baud: u32, parity: device::Parity, stop_bits: u8) -> SerialSettings {
 /// What `lane` has and permits, for the engine.
 pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>) -> Bench {
     let ports = lane.ports().iter().map(|port| port.name.clone()).collect();
-    let mut bench = bench_of(device, ports, lane.offers().into_iter().collect(), permits);
-    let is_tcp = |port: &&PortProperties| port.line == Line::Stream(Framing::ModbusTcp);
-    let over_tcp = lane.ports().iter().filter(is_tcp);
-    bench.modbus_tcp = over_tcp.map(|port| port.name.clone()).collect();
-    bench
+    let roles = |wanted: fn(&PortProperties) -> bool| {
+        let ports = lane.ports().iter().filter(move |port| wanted(port));
+        ports.map(|port| port.name.clone()).collect()
+    };
+    Bench {
+        fixed_rates: roles(|port| !port.sets_bit_rate),
+        modbus_tcp: roles(|port| port.line == Line::Stream(Framing::ModbusTcp)),
+        ..bench_of(device, ports, lane.offers().into_iter().collect(), permits)
+    }
 }
 
-/// As far as it is known of a device that cannot be simulated: its ports, and no stimulus.
-pub(crate) fn described_bench(device: &Device, permits: &BTreeSet<Effect>) -> Bench {
+/// As far as it is known of a device that is not simulated, before its links are opened: its ports, and the stimuli that
+/// somebody can give.
+pub(crate) fn described_bench(
+    device: &Device,
+    permits: &BTreeSet<Effect>,
+    operator: &Operator,
+) -> Bench {
     let ports = device.description.ports.keys().cloned().collect();
-    bench_of(device, ports, BTreeSet::new(), permits)
+    let place = device.place.as_ref();
+    let place = place.filter(|it| it.stimulus_command.is_some() || !operator.is_none());
+    let stimuli = place.map(offered).unwrap_or_default();
+    bench_of(device, ports, stimuli.into_iter().collect(), permits)
 }
 
 /// A bench file takes away what it does not mention.
@@ -152,7 +235,7 @@ fn bench_of(
 ) -> Bench {
     let mut permits = permits.clone();
     if let Some(place) = &device.place {
-        ports.retain(|role| place.ports.contains(role));
+        ports.retain(|role| place.links.contains_key(role));
         permits.retain(|effect| place.permits.contains(effect));
         if let Some(there) = &place.stimuli {
             let there: BTreeSet<StimulusKind> =
@@ -161,12 +244,14 @@ fn bench_of(
         }
     }
     let description = &device.description;
-    let place = device.place.as_ref();
+    let links = device.place.iter().flat_map(|place| &place.links);
+    let over_tcp = links.filter(|(_, link)| {
+        link.kind == LinkKind::Tcp && link.parameters.framing != Some(bench::Framing::Rtu)
+    });
     Bench {
-        modbus_tcp: place
-            .map(|place| place.modbus_tcp.clone())
-            .unwrap_or_default(),
+        modbus_tcp: over_tcp.map(|(role, _)| role.clone()).collect(),
         ports,
+        fixed_rates: BTreeSet::new(),
         stimuli,
         permits,
         node: description.canopen.as_ref().map(|canopen| canopen.node),

@@ -4,11 +4,14 @@
 mod bench;
 mod commands;
 mod complaint;
+mod control;
 mod embedded;
 mod exit;
 mod glob;
 mod input;
 mod library;
+mod links;
+mod operator;
 mod options;
 mod player;
 mod problems;
@@ -16,15 +19,18 @@ mod progress;
 mod reports;
 mod screen;
 mod select;
+mod stimulus_words;
 mod stop;
 
 pub use bench::{Behaviour, NotConnected};
 pub use complaint::Complaint;
 pub use exit::Exit;
 pub use library::{Device, Library, Place};
+pub use operator::Operator;
 pub use options::{
     BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format,
     ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
+    ServeOptions, StimulateOptions,
 };
 pub use player::{Plan, play};
 
@@ -45,6 +51,8 @@ pub fn main(options: &Options) -> Exit {
         Command::Devices { format } => commands::devices::devices(*format, &mut screen),
         Command::Bus(options) => commands::bus::bus(options, &mut screen),
         Command::Prove(options) => commands::prove::prove(options, &mut screen),
+        Command::Serve(options) => commands::serve::serve(options, &mut screen),
+        Command::Stimulate(options) => commands::stimulate::stimulate(options),
         Command::NewDevice(options) => commands::new_device::new_device(options, &mut screen),
         Command::Export { directory, force } => {
             commands::export::export(directory, *force, &mut screen)

@@ -13,6 +13,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
+use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
 use fieldproof_suite::model::{Effect, StimulusName};
 use fieldproof_suite::{Diagnostic, SourceFile, Suite};
@@ -23,7 +24,6 @@ use crate::embedded;
 use crate::input;
 use crate::options::Selection;
 use crate::problems;
-pub(crate) use benches::LinksAre;
 use benches::is_bench;
 
 /// A device with everything that is known of it.
@@ -44,19 +44,23 @@ pub struct Device {
 pub struct Place {
     /// What the bench calls it.
     pub name: String,
-    /// Whether all its links are `sim:`.
-    pub is_simulated: bool,
-    /// The roles of the ports that are connected.
-    pub ports: BTreeSet<String>,
-    /// Those of them that are connected by Modbus TCP.
-    pub modbus_tcp: BTreeSet<String>,
+    /// What the ports that are connected are connected to, by role.
+    pub links: BTreeMap<String, Link>,
     /// The stimuli there are; those that the links offer if nothing is said.
     pub stimuli: Option<BTreeSet<StimulusName>>,
+    /// What gives them on real links; without it, an operator is asked.
+    pub stimulus_command: Option<Vec<String>>,
     /// What is permitted.
     pub permits: BTreeSet<Effect>,
 }
 
 impl Device {
+    /// Whether it is a reference device on simulated links, and not a real one.
+    pub fn is_simulated(&self) -> bool {
+        let links = self.place.as_ref().map(|place| &place.links);
+        links.is_none_or(|links| links.values().all(|link| link.kind == LinkKind::Sim))
+    }
+
     /// The faults its reference device can have.
     pub fn faults(&self) -> &'static [Fault] {
         self.kind.map_or(&[], |kind| kind.faults)
@@ -95,7 +99,7 @@ impl Library {
     /// [`Complaint`]: a file is wrong or cannot be read, or there is nothing of a name.
     pub fn load(selection: &Selection) -> Result<Library, Complaint> {
         let mut reader = Reader::of(selection);
-        reader.read_benches(LinksAre::Named);
+        reader.read_benches();
         reader.finish(selection)
     }
 
@@ -104,15 +108,11 @@ impl Library {
     ///
     /// # Errors
     /// As [`Library::load`]; or the bench has a link that cannot be opened, where `links` are to be.
-    pub(crate) fn load_on_bench(
-        selection: &Selection,
-        bench: &Path,
-        links: LinksAre,
-    ) -> Result<Library, Complaint> {
+    pub(crate) fn load_on_bench(selection: &Selection, bench: &Path) -> Result<Library, Complaint> {
         let mut reader = Reader::of(selection);
         reader.benches.clear();
         reader.bench(bench);
-        reader.devices = reader.read_benches(links);
+        reader.devices = reader.read_benches();
         reader.finish(selection)
     }
 
@@ -126,7 +126,7 @@ impl Library {
         if selection.suites.is_empty() {
             reader.carried_benches();
         }
-        reader.read_benches(LinksAre::Named);
+        reader.read_benches();
         reader.look_for_checks();
         reader.finish(selection)
     }

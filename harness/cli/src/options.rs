@@ -61,6 +61,10 @@ pub enum Command {
     },
     /// Play every suite against every fault and show which case catches which
     Prove(ProveOptions),
+    /// Run a reference device on real links until interrupted
+    Serve(ServeOptions),
+    /// Do something beside the bus to a device that is served
+    Stimulate(StimulateOptions),
     /// Offer a CAN bus without adapters, which programs share over SLCAN, until interrupted
     Bus(BusOptions),
     /// Write a device description to start from
@@ -99,6 +103,12 @@ pub struct RunOptions {
     /// Play on the devices of this bench, and do only what it permits.
     #[arg(long, value_name = "FILE")]
     pub bench: Option<PathBuf>,
+    /// Ask nobody for stimuli on real links: cases that need one are skipped, unless the bench has a command for it.
+    #[arg(long)]
+    pub no_operator: bool,
+    /// How long an operator may take over a stimulus, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 120)]
+    pub operator_timeout: u64,
     /// Show what would be played on what, and what is skipped and why.
     #[arg(long)]
     pub dry_run: bool,
@@ -137,6 +147,48 @@ pub struct RunOptions {
     /// How to print the outcome.
     #[arg(long, default_value = "text")]
     pub format: Format,
+}
+
+/// Options of `serve`.
+#[derive(Debug, Args)]
+pub struct ServeOptions {
+    /// The reference device.
+    #[arg(value_name = "DEVICE")]
+    pub device: String,
+    /// A link for it: `socketcan:vcan0`, `serial:/dev/ttyUSB0`, `tcp:127.0.0.1:502`; `ROLE=LINK` says for which of its
+    /// ports. May be repeated.
+    #[arg(long, value_name = "[ROLE=]LINK", required = true)]
+    pub on: Vec<String>,
+    /// Its CANopen node-ID.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=127))]
+    pub node: Option<u8>,
+    /// Its Modbus address.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=247))]
+    pub address: Option<u8>,
+    /// Switch this fault on.
+    #[arg(long, value_name = "NAME")]
+    pub fault: Option<String>,
+    /// Be this legal variant.
+    #[arg(long, value_name = "NAME", conflicts_with = "fault")]
+    pub variant: Option<String>,
+    /// The seed of its response times.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Take stimuli from this socket; see `fieldproof stimulate`.
+    #[arg(long, value_name = "SOCKET")]
+    pub control: Option<PathBuf>,
+}
+
+/// Options of `stimulate`.
+#[derive(Debug, Args)]
+pub struct StimulateOptions {
+    /// The socket that the device was served with.
+    #[arg(value_name = "SOCKET")]
+    pub socket: PathBuf,
+    /// `power on`, `power off`, `process-value NAME VALUE`, `condition NAME on`, `condition NAME off` or
+    /// `setting NAME VALUE`.
+    #[arg(value_name = "STIMULUS", required = true, allow_hyphen_values = true)]
+    pub stimulus: Vec<String>,
 }
 
 /// Options of `list`.

@@ -12,6 +12,7 @@ use fieldproof_suite::{Environment, Suite};
 use crate::bench::{self, Behaviour, NotConnected};
 use crate::glob;
 use crate::library::{Device, Library};
+use crate::operator::Operator;
 use crate::options::EFFECTS;
 
 /// The tool and its version, as journals name it.
@@ -32,6 +33,8 @@ pub struct Plan {
     pub inspects_device: bool,
     /// How the reference device is built.
     pub behaviour: Behaviour,
+    /// Who is asked for stimuli on real links.
+    pub operator: Operator,
 }
 
 impl Default for Plan {
@@ -44,6 +47,7 @@ impl Default for Plan {
             strict: false,
             inspects_device: true,
             behaviour: Behaviour::default(),
+            operator: Operator::none(),
         }
     }
 }
@@ -76,7 +80,7 @@ impl Plan {
 /// set.
 ///
 /// # Errors
-/// The device has no such fault or variant, or cannot be simulated.
+/// The device has no such fault or variant, or cannot be simulated, or its links cannot be opened.
 pub fn play(
     library: &Library,
     device: &Device,
@@ -84,8 +88,9 @@ pub fn play(
     sink: &mut dyn Sink,
     stop: &AtomicBool,
 ) -> Result<LaneOutcome, NotConnected> {
-    let mut lane = bench::connect(device, &plan.behaviour)?;
-    let bench = bench::bench(device, &lane, &plan.permits);
+    let mut lane = bench::open(device, &plan.behaviour, &plan.operator)?;
+    let lane = lane.as_mut();
+    let bench = bench::bench(device, lane, &plan.permits);
     let behaviour = &plan.behaviour;
     let job = LaneJob {
         tool: TOOL,
@@ -101,7 +106,7 @@ pub fn play(
         variant: behaviour.variant.as_deref(),
         seed: behaviour.seed,
     };
-    Ok(play_lane(&job, &mut lane, sink, stop))
+    Ok(play_lane(&job, lane, sink, stop))
 }
 
 /// A case that would be played or skipped.
@@ -123,11 +128,11 @@ pub(crate) fn preview<'l>(
 ) -> Result<Vec<(&'l Suite, Vec<PlannedCase>)>, NotConnected> {
     let bench = match device.kind {
         // A real device does what it does; nobody knows it before it is there.
-        Some(_) if device.place.as_ref().is_none_or(|it| it.is_simulated) => {
+        Some(_) if device.is_simulated() => {
             let lane = bench::connect(device, &plan.behaviour)?;
             bench::bench(device, &lane as &dyn Lane, &plan.permits)
         }
-        _ => bench::described_bench(device, &plan.permits),
+        _ => bench::described_bench(device, &plan.permits, &plan.operator),
     };
     let environment = Environment {
         node: bench.node,

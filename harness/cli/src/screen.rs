@@ -51,6 +51,11 @@ impl Screen {
     }
 
     /// Why something that was printed did not get to where it belongs, a full disk for instance.
+    /// Lets whoever reads see now what was printed.
+    pub(crate) fn flush(&mut self) {
+        let _ = self.out.flush();
+    }
+
     pub(crate) fn take_loss(&mut self) -> Option<io::Error> {
         self.lost.take()
     }

@@ -47,8 +47,7 @@ pub(crate) fn patterns_must_match(library: &Library, plan: &Plan) -> Result<(), 
 
 /// Every device that is to be simulated must be one that can be.
 pub(crate) fn must_be_simulated(devices: &[&Device]) -> Result<(), Complaint> {
-    let is_simulated = |device: &Device| device.place.as_ref().is_none_or(|it| it.is_simulated);
-    let cannot_be = |device: &&&Device| device.kind.is_none() && is_simulated(device);
+    let cannot_be = |device: &&&Device| device.kind.is_none() && device.is_simulated();
     let Some(device) = devices.iter().find(cannot_be) else {
         return Ok(());
     };

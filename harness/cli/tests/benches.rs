@@ -173,11 +173,22 @@ fn bench_that_does_not_fit_is_refused_with_its_place() {
             ],
         ),
         (
-            bench("permits: []").replace("sim:", "socketcan:can0"),
+            bench("permits: []").replace("sim:", "socketcan:can0?baud=9600"),
             [
-                "this version opens only `sim:`",
-                "not `socketcan:`",
+                "`socketcan:` has no parameter `baud`",
+                "it has uncertainty",
                 "bench.yaml:4:52",
+            ],
+        ),
+        (
+            bench("permits: []").replace(
+                "kinco-servo, ports: {can: \"sim:\"}",
+                "liaomiao-encoder, ports: {can: \"sim:\", serial: \"serial:/dev/ttyS0\"}",
+            ),
+            [
+                "one device is both simulated and real",
+                "`sim:` beside a real link",
+                "bench.yaml:4:57",
             ],
         ),
         (
@@ -200,16 +211,28 @@ fn bench_that_does_not_fit_is_refused_with_its_place() {
 }
 
 #[test]
-fn link_that_is_not_opened_yet_is_a_warning_when_checked() {
+fn real_links_are_checked_without_being_opened() {
     let folder = Folder::new();
     folder.write(
         "lab.yaml",
-        bench("permits: []").replace("sim:", "slcan:/dev/ttyACM0"),
+        bench("permits: []").replace("sim:", "slcan:/dev/ttyACM0@250000"),
     );
     let ran = folder.run(&["check", "lab.yaml"]);
     assert_eq!(ran.exit(), Some(0), "{}", ran.error());
-    assert!(ran.out().contains("1 bench: 1 warning"), "{}", ran.out());
-    assert!(ran.error().contains("opens only `sim:`"), "{}", ran.error());
+    assert!(ran.out().contains("1 bench: no mistakes"), "{}", ran.out());
+    let ran = folder.run(&["run", "canopen.nmt", "--bench", "lab.yaml", "--dry-run"]);
+    assert_eq!(ran.exit(), Some(0), "{}", ran.error());
+}
+
+#[test]
+fn link_that_cannot_be_opened_breaks_the_run() {
+    let folder = Folder::new();
+    let bench = bench("permits: []").replace("sim:", "socketcan:no-such-if");
+    folder.write("lab.yaml", bench);
+    let ran = folder.run(&["run", "canopen.nmt", "--bench", "lab.yaml"]);
+    assert_eq!(ran.exit(), Some(3), "{}", ran.error());
+    let why = "socketcan:no-such-if: there is no interface no-such-if";
+    assert!(ran.error().contains(why), "{}", ran.error());
 }
 
 /// The description of the servo drive under another name, which nothing simulates.
@@ -296,7 +319,7 @@ fn documented_examples_are_what_they_say() {
         .skip(1)
         .map(|block| block.split("```").next().unwrap())
         .collect();
-    assert_eq!(blocks.len(), 2, "a device and a bench");
+    assert_eq!(blocks.len(), 3, "a device and two benches");
     let folder = Folder::new();
     unknown_drive(&folder);
     folder.write("my-drive/device.yaml", blocks[0]);
@@ -305,9 +328,10 @@ fn documented_examples_are_what_they_say() {
         folder.read("drive/kinco-servo.eds"),
     );
     folder.write("my-drive/lab.yaml", blocks[1]);
+    folder.write("my-drive/rack.yaml", blocks[2]);
     let checked = folder.run(&["check", "my-drive"]);
     assert!(
-        checked.out().contains("1 bench: no mistakes"),
+        checked.out().contains("2 benches: no mistakes"),
         "{}{}",
         checked.out(),
         checked.error()

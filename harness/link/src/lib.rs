@@ -10,6 +10,7 @@
 
 mod bus_error;
 mod connected;
+mod joined;
 mod lane;
 mod participant;
 pub mod real;
@@ -20,6 +21,7 @@ mod wrap;
 
 pub use bus_error::BusError;
 pub use connected::Connected;
+pub use joined::Joined;
 pub use lane::{
     Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
     StimulusError,

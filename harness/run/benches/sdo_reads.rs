@@ -63,6 +63,7 @@ fn lane() -> SimLane {
 /// Plays the case; gives back the sink.
 fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S {
     let bench = Bench {
+        fixed_rates: Default::default(),
         ports: ["can".to_owned()].into(),
         modbus_tcp: [].into(),
         stimuli: [].into(),

@@ -16,6 +16,8 @@ use crate::tester::SERIAL;
 pub struct Bench {
     /// The roles of the ports it has connected.
     pub ports: BTreeSet<String>,
+    /// The roles of those whose bit rate cannot be changed from here.
+    pub fixed_rates: BTreeSet<String>,
     /// Those of them whose link is Modbus TCP, where a header stands around a PDU instead of address and CRC.
     pub modbus_tcp: BTreeSet<String>,
     /// The stimuli it offers.
@@ -41,6 +43,7 @@ pub fn skip_reason(
         .or_else(|| missing_claim(case, device))
         .or_else(|| missing_permission(case, device, bench))
         .or_else(|| wrong_address(case, bench))
+        .or_else(|| fixed_rate(case, bench))
 }
 
 fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
@@ -162,6 +165,21 @@ fn wrong_address(case: &Case, bench: &Bench) -> Option<String> {
             "written for node {node}, which the device does not have here"
         )),
         _ => None,
+    }
+}
+
+/// A bus without bits has no bit rate to change, and some interfaces may not be set.
+fn fixed_rate(case: &Case, bench: &Bench) -> Option<String> {
+    let sets = |steps: &[Located<Step>]| steps.iter().any(|step| sets_bit_rate(&step.value));
+    (bench.fixed_rates.contains(crate::tester::CAN) && (sets(&case.control) || sets(&case.steps)))
+        .then(|| "the bit rate of this link cannot be changed".to_owned())
+}
+
+fn sets_bit_rate(step: &Step) -> bool {
+    match step {
+        Step::SetBitRate(_) => true,
+        Step::Repeat(repeat) => repeat.steps.iter().any(|step| sets_bit_rate(&step.value)),
+        _ => false,
     }
 }
 

@@ -179,6 +179,7 @@ fn our_engine_and_its_server() {
     let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
     let device = plain_device();
     let bench = Bench {
+        fixed_rates: Default::default(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: ["serial".to_owned()].into(),
         stimuli: [].into(),
@@ -235,7 +236,7 @@ fn its_client_and_our_encoder() {
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let served =
-            scope.spawn(|| serve(Box::new(connected), vec![Box::new(server)], || None, &stop));
+            scope.spawn(|| serve(Box::new(connected), vec![Box::new(server)], &mut (), &stop));
         let asked = scope.spawn(move || runtime().block_on(ask_encoder(address)));
         let asked = asked.join();
         stop.store(true, Ordering::Relaxed);

@@ -10,3 +10,5 @@ pub(crate) mod new_device;
 pub(crate) mod prove;
 pub(crate) mod run;
 pub(crate) mod schema;
+pub(crate) mod serve;
+pub(crate) mod stimulate;

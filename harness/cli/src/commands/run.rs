@@ -13,7 +13,8 @@ use serde::Serialize;
 use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::exit::Exit;
-use crate::library::{Device, Library, LinksAre};
+use crate::library::{Device, Library};
+use crate::operator::Operator;
 use crate::options::{EFFECTS, Format, RunOptions};
 use crate::player::Plan;
 use crate::progress::Progress;
@@ -25,13 +26,7 @@ use lanes::Stage;
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
 pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
     let library = match &options.bench {
-        Some(bench) => {
-            let links = match options.dry_run {
-                true => LinksAre::Named,
-                false => LinksAre::Opened,
-            };
-            Library::load_on_bench(&options.selection, bench, links)?
-        }
+        Some(bench) => Library::load_on_bench(&options.selection, bench)?,
         None => Library::load(&options.selection)?,
     };
     let plan = plan(options);
@@ -157,6 +152,10 @@ fn plan(options: &RunOptions) -> Plan {
             fault: options.fault.clone(),
             variant: options.variant.clone(),
             seed: options.seed,
+        },
+        operator: match options.no_operator {
+            true => Operator::none(),
+            false => Operator::at_the_terminal(Duration::from_secs(options.operator_timeout)),
         },
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fieldproof_report::{Problem, Severity};
-use fieldproof_suite::bench::{BenchDescription, BenchDevice, LinkKind};
+use fieldproof_suite::bench::{BenchDescription, BenchDevice, Link, LinkKind};
 use fieldproof_suite::device::PortDescription;
 use fieldproof_suite::model::Located;
 use fieldproof_suite::{Position, SourceFile, load_bench};
@@ -13,15 +13,6 @@ use fieldproof_suite::{Position, SourceFile, load_bench};
 use super::{Device, Folder, Place, Reader, source_file};
 use crate::complaint::with_choice;
 use crate::{embedded, input, problems};
-
-/// What is done with the links of a bench.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum LinksAre {
-    /// Only looked at.
-    Named,
-    /// Opened, so that those that cannot be are errors.
-    Opened,
-}
 
 /// The numbers of a medium that devices have so far, each with where the bench gives it.
 type Taken = BTreeMap<(String, u8), Position>;
@@ -71,12 +62,12 @@ impl Reader {
     }
 
     /// Reads the benches and gives back what stands on them, by name.
-    pub(super) fn read_benches(&mut self, links: LinksAre) -> BTreeMap<String, Device> {
+    pub(super) fn read_benches(&mut self) -> BTreeMap<String, Device> {
         let benches = std::mem::take(&mut self.benches);
         let mut devices = BTreeMap::new();
         for (file, folder) in &benches {
             match load_bench(file) {
-                Ok(bench) => devices.extend(self.read_bench(&bench, file, folder, links)),
+                Ok(bench) => devices.extend(self.read_bench(&bench, file, folder)),
                 Err(diagnostics) => self.diagnostics(&diagnostics, std::slice::from_ref(file)),
             }
         }
@@ -89,7 +80,6 @@ impl Reader {
         bench: &BenchDescription,
         file: &SourceFile,
         folder: &Folder,
-        links: LinksAre,
     ) -> Vec<(String, Device)> {
         let shown = Shown {
             path: &file.path,
@@ -101,7 +91,7 @@ impl Reader {
             let Some(mut device) = self.find_device(&on_bench.device, folder, &shown) else {
                 continue;
             };
-            self.check_ports(on_bench, &device, &shown, links);
+            self.check_ports(on_bench, &device, &shown);
             self.set_addresses(on_bench, &mut device, &shown);
             let description = &device.description;
             if let Some(canopen) = &description.canopen {
@@ -120,20 +110,14 @@ impl Reader {
                     &shown,
                 );
             }
+            let links = on_bench.ports.iter();
             device.place = Some(Place {
                 name: on_bench.name.value.clone(),
-                is_simulated: on_bench
-                    .ports
-                    .values()
-                    .all(|it| it.value.kind == LinkKind::Sim),
-                ports: on_bench.ports.keys().cloned().collect(),
-                modbus_tcp: on_bench
-                    .ports
-                    .iter()
-                    .filter(|(_, link)| link.value.tcp().is_some_and(|(_, is_rtu)| !is_rtu))
-                    .map(|(role, _)| role.clone())
+                links: links
+                    .map(|(role, link)| (role.clone(), link.value.clone()))
                     .collect(),
                 stimuli: on_bench.stimuli.clone(),
+                stimulus_command: on_bench.stimulus_command.clone(),
                 permits: on_bench.permits.clone(),
             });
             devices.push((on_bench.name.value.clone(), device));
@@ -174,14 +158,22 @@ impl Reader {
         }
     }
 
+    /// A reference device in simulation has no port outside, and a real one none inside.
+    fn check_all_or_none_simulated(&mut self, on_bench: &BenchDevice, shown: &Shown<'_>) {
+        let is_simulated = |link: &&Located<Link>| link.value.kind == LinkKind::Sim;
+        let links = on_bench.ports.values();
+        let (simulated, real): (Vec<_>, Vec<_>) = links.partition(is_simulated);
+        if let ([simulated, ..], [_, ..]) = (&simulated[..], &real[..]) {
+            let message = "one device is both simulated and real".to_owned();
+            let label = "`sim:` beside a real link";
+            self.problems
+                .push(shown.error(simulated.at, message, label));
+        }
+    }
+
     /// The ports must be those of the device, on links that carry them.
-    fn check_ports(
-        &mut self,
-        on_bench: &BenchDevice,
-        device: &Device,
-        shown: &Shown<'_>,
-        links: LinksAre,
-    ) {
+    fn check_ports(&mut self, on_bench: &BenchDevice, device: &Device, shown: &Shown<'_>) {
+        self.check_all_or_none_simulated(on_bench, shown);
         let described = &device.description.ports;
         for (role, link) in &on_bench.ports {
             let kind = link.value.kind;
@@ -200,18 +192,6 @@ impl Reader {
                 let message = format!("the port \"{role}\" is a {what} port");
                 let label = format!("`{}:` carries no {what} port", kind.name());
                 self.problems.push(shown.error(link.at, message, &label));
-            } else if kind != LinkKind::Sim {
-                let severity = match links {
-                    LinksAre::Opened => Severity::Error,
-                    LinksAre::Named => Severity::Warning,
-                };
-                let message = format!("this version opens only `sim:`, not `{}:`", kind.name());
-                self.problems.push(shown.problem(
-                    severity,
-                    link.at,
-                    message,
-                    "cannot be opened yet",
-                ));
             }
         }
     }

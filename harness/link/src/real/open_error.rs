@@ -11,7 +11,8 @@ pub struct OpenError {
 }
 
 impl OpenError {
-    pub(super) fn new(link: &str, reason: impl ToString) -> OpenError {
+    /// `link` could not be opened for `reason`.
+    pub fn new(link: &str, reason: impl ToString) -> OpenError {
         OpenError {
             link: link.to_owned(),
             reason: reason.to_string(),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::port::Port;
 use super::ports::{GivesUp, Ports};
-use crate::{Instant, Line, LinkError, Outbox, Participant, Stimulus};
+use crate::{Instant, Line, LinkError, NotOffered, Outbox, Participant, Stimulus};
 
 /// How often the driver looks whether it is to stop, and whether there is a stimulus for the device.
 const LOOK: Duration = Duration::from_millis(50);
@@ -14,15 +14,32 @@ const LOOK: Duration = Duration::from_millis(50);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct TheDevice;
 
-/// Lets `device` take part in `ports`, its port numbers in their order, until `stop` is set. Between frames
-/// `next_stimulus` is asked whether something is to be done to it; what it does not offer it ignores.
+/// What is done to a served device beside the bus.
+pub trait Control {
+    /// The next stimulus, if there is one by now.
+    fn next(&mut self) -> Option<Stimulus>;
+
+    /// What became of it.
+    fn done(&mut self, outcome: Result<(), NotOffered>);
+}
+
+/// Nothing is done to it.
+impl Control for () {
+    fn next(&mut self) -> Option<Stimulus> {
+        None
+    }
+
+    fn done(&mut self, _: Result<(), NotOffered>) {}
+}
+
+/// Lets `device` take part in `ports`, its port numbers in their order, until `stop` is set.
 ///
 /// # Errors
 /// [`LinkError`]: a link failed.
 pub fn serve(
     device: Box<dyn Participant>,
     ports: Vec<Box<dyn Port>>,
-    mut next_stimulus: impl FnMut() -> Option<Stimulus>,
+    control: &mut dyn Control,
     stop: &AtomicBool,
 ) -> Result<(), LinkError> {
     let mut server = Server {
@@ -34,9 +51,10 @@ pub fn serve(
     while !stop.load(Ordering::Relaxed) {
         server.wake();
         server.listen();
-        if let Some(stimulus) = next_stimulus() {
+        if let Some(stimulus) = control.next() {
             let now = server.now();
-            let _ = server.device.stimulate(now, &stimulus, &mut server.outbox);
+            let outbox = &mut server.outbox;
+            control.done(server.device.stimulate(now, &stimulus, outbox));
         }
         server.send()?;
         server.follow_lines();

@@ -51,11 +51,17 @@ pub struct SocketCan {
 }
 
 impl SocketCan {
-    /// Opens the interface called `name` for `role`, whose bus is said to run at `bit_rate` bits a second.
+    /// Opens the interface called `name` for `role`, whose bus is said to run at `bit_rate` bits a second. Without
+    /// `uncertainty`, what is known of the adapter decides how far an instant may be off.
     ///
     /// # Errors
     /// [`OpenError`]: there is no such interface, it is down, or it is set to another bit rate.
-    pub fn open(role: &str, name: &str, bit_rate: u32) -> Result<SocketCan, OpenError> {
+    pub fn open(
+        role: &str,
+        name: &str,
+        bit_rate: u32,
+        uncertainty: Option<Duration>,
+    ) -> Result<SocketCan, OpenError> {
         let link = format!("socketcan:{name}");
         let wrong = |reason: String| OpenError::new(&link, reason);
         let interface = CanInterface::open(name).map_err(|error| match error {
@@ -87,10 +93,10 @@ impl SocketCan {
                     true => "hardware",
                     false => "kernel",
                 },
-                uncertainty: match has_hardware_stamps {
+                uncertainty: uncertainty.unwrap_or_else(|| match has_hardware_stamps {
                     true => Duration::from_micros(10),
                     false => stamping_uncertainty(name),
-                },
+                }),
                 sets_bit_rate: real_bit_rate.is_some(),
                 tells_departure: true,
                 link,

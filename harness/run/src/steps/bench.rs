@@ -81,6 +81,8 @@ impl Tester<'_> {
     pub(crate) fn give(&mut self, stimulus: &Stimulus) -> Result<(), Stop> {
         let at_ns = self.session.now().as_nanos();
         let what = describe(stimulus);
+        // What the device does about it may come while it is still being given: an operator takes his time.
+        self.session.mark_sent();
         self.session
             .lane()
             .stimulate(stimulus)
@@ -92,7 +94,6 @@ impl Tester<'_> {
             })?;
         self.session
             .emit(Event::Stimulus(Box::new(StimulusEvent { at_ns, what })));
-        self.session.mark_sent();
         Ok(())
     }
 

@@ -248,6 +248,7 @@ impl Setup {
         assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
         let description = self.description();
         let bench = Bench {
+            fixed_rates: Default::default(),
             ports: ["can".to_owned()].into(),
             modbus_tcp: [].into(),
             stimuli: [].into(),

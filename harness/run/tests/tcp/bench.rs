@@ -95,7 +95,7 @@ impl Served {
         let stop = Arc::new(AtomicBool::new(false));
         let told = Arc::clone(&stop);
         let thread = thread::spawn(move || {
-            serve(Box::new(connected), vec![Box::new(server)], || None, &told).unwrap();
+            serve(Box::new(connected), vec![Box::new(server)], &mut (), &told).unwrap();
         });
         Served {
             host_port,
@@ -126,6 +126,7 @@ pub(crate) fn play(
     let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
     let is_tcp = framing == Framing::ModbusTcp;
     let bench = Bench {
+        fixed_rates: [].into(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: is_tcp.then(|| "serial".to_owned()).into_iter().collect(),
         stimuli: [].into(),

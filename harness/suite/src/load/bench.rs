@@ -78,7 +78,7 @@ fn links_in_use(devices: &[BenchDevice], problems: &mut Vec<Problem>) {
     let mut links: Vec<&Located<Link>> = devices.iter().flat_map(|it| it.ports.values()).collect();
     links.sort_by_key(|link| link.at);
     for link in links {
-        let Link { kind, target } = &link.value;
+        let Link { kind, target, .. } = &link.value;
         if !matches!(kind, LinkKind::Slcan | LinkKind::Serial) {
             continue;
         }
@@ -118,6 +118,16 @@ fn read_device(
         );
         problems.push(*problem.at(device.ports.at));
     }
+    if let Some(command) = &device.stimulus_command
+        && command.value.is_empty()
+    {
+        let problem = Problem::new(
+            code::EMPTY,
+            "the stimulus command names no program",
+            "needs at least the program",
+        );
+        problems.push(*problem.at(command.at));
+    }
     BenchDevice {
         name: device.name,
         device: device.device,
@@ -125,6 +135,7 @@ fn read_device(
         node: device.node,
         address: device.address,
         stimuli: device.stimuli.map(|stimuli| stimuli.into_iter().collect()),
+        stimulus_command: device.stimulus_command.map(|command| command.value),
         permits: device.permits.into_iter().collect(),
         at,
     }
