@@ -21,6 +21,7 @@ mod profile;
 mod queue;
 mod sdo;
 pub(crate) mod service_faults;
+mod services;
 mod slave;
 mod state;
 mod sync;

@@ -19,7 +19,6 @@ use super::sdo::Server;
 use super::sync::Sync;
 use super::time::Clock;
 use super::tpdo::{self, Tpdo};
-use super::write::SECOND_SDO_SERVER;
 use super::{Address, Application, Behaviour, Profile, State};
 
 const ALL: std::ops::RangeInclusive<u16> = 0x0000..=0xFFFF;
@@ -319,42 +318,6 @@ impl Slave {
         self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
         self.tpdos = tpdo::tpdos(&self.objects, &self.behaviour);
         self.boot_at = self.has_node().then(|| now + self.profile.boot_time);
-    }
-
-    /// What only some slaves have begins as after power-on.
-    fn initialise_services(&mut self, now: Instant) {
-        self.errors = Errors::default();
-        self.consumers = Consumers::default();
-        self.clock = Clock::default();
-        self.set_clock(now);
-        self.consequence = None;
-        self.switch = None;
-        self.identified = 0;
-        self.scanned = 0;
-        self.second_sdo = (None, Server::default());
-        if self.profile.complete {
-            self.consumers = Consumers::read(&self.objects);
-            self.reconfigure_second_sdo();
-        }
-    }
-
-    /// Reads 1201h again: the server works where both COB-IDs are valid.
-    pub(super) fn reconfigure_second_sdo(&mut self) {
-        let cob_id = |sub| {
-            let cob_id = self.objects.number(Address::new(SECOND_SDO_SERVER, sub))?;
-            let valid = cob_id & pdo::INVALID == 0;
-            u16::try_from(cob_id & 0x7FF).ok().filter(|_| valid)
-        };
-        let (request, response) = (cob_id(1), cob_id(2));
-        let used = request.filter(|_| response.is_some());
-        self.second_sdo = (used, Server::answering_on(response));
-    }
-
-    /// Lets the second SDO server do what `work` says in the place of the first.
-    fn with_second_sdo(&mut self, work: impl FnOnce(&mut Slave)) {
-        std::mem::swap(&mut self.sdo, &mut self.second_sdo.1);
-        work(self);
-        std::mem::swap(&mut self.sdo, &mut self.second_sdo.1);
     }
 
     fn boot(&mut self, now: Instant) {
