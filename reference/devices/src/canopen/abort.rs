@@ -19,6 +19,8 @@ impl Abort {
     pub(crate) const NOT_MAPPABLE: Abort = Abort(0x0604_0041);
     /// The objects to be mapped would exceed the length of a PDO.
     pub(crate) const MAPPING_TOO_LONG: Abort = Abort(0x0604_0042);
+    /// Parameters that do not go together.
+    pub(crate) const INCOMPATIBLE: Abort = Abort(0x0604_0043);
     /// Access failed due to a hardware error.
     pub(crate) const HARDWARE: Abort = Abort(0x0606_0000);
     /// The length of the service parameter does not match.

@@ -13,6 +13,7 @@ pub(crate) enum Service {
     Sdo,
     Pdo,
     Sync,
+    Time,
     Emergency,
     Lss,
 }
@@ -60,6 +61,11 @@ impl Queue {
             out.send(port, Transmission::Frame(pending.frame));
             self.pending.pop_front();
         }
+    }
+
+    /// Forgets what is due.
+    pub(crate) fn drop_due(&mut self, now: Instant) {
+        self.pending.retain(|pending| pending.due > now);
     }
 
     pub(crate) fn retain(&mut self, permitted: impl Fn(Service) -> bool) {

@@ -8,6 +8,12 @@ pub(crate) const NO_TPDO_ON_START: Variant = Variant {
     apply: |behaviour| behaviour.canopen.tpdo_on_start = false,
 };
 
+pub(crate) const TPDO_WITH_FIRST_SYNC: Variant = Variant {
+    name: "tpdo-with-first-sync",
+    words: "sends a cyclic TPDO with the first SYNC, then with every n-th: CiA 301 leaves open which is the first",
+    apply: |behaviour| behaviour.canopen.tpdo_with_first_sync = true,
+};
+
 pub(crate) const REMOTE_FRAMES_IGNORED: Variant = Variant {
     name: "remote-frames-ignored",
     words: "does not answer a remote frame for a TPDO: CiA advises against them, a device need not",

@@ -47,9 +47,19 @@ pub(super) struct Server {
     buffer: Vec<u8>,
     /// What the object last written held before.
     before: Option<(Address, Vec<u8>)>,
+    /// The identifier of its answers, if it is not the default server's.
+    answers_on: Option<u16>,
 }
 
 impl Server {
+    /// A server beside the default one.
+    pub(super) fn answering_on(identifier: Option<u16>) -> Server {
+        Server {
+            answers_on: identifier,
+            ..Server::default()
+        }
+    }
+
     pub(super) const fn name(&self) -> &'static str {
         match self.transfer {
             Transfer::None => "idle",
@@ -115,7 +125,8 @@ impl Slave {
 
     pub(super) fn respond_from(&mut self, now: Instant, node: u8, response: [u8; 8]) {
         let at = now + self.turnaround();
-        let identifier = identifier(0x580 + u16::from(node));
+        let raw = self.sdo.answers_on.unwrap_or(0x580 + u16::from(node));
+        let identifier = identifier(raw);
         self.queue
             .push(at, Service::Sdo, Frame::of_eight(identifier, response));
     }
