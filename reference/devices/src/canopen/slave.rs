@@ -152,6 +152,7 @@ impl Slave {
             self.error_control.due(),
             self.sync.next,
             self.tpdos_due(),
+            self.sdo.deadline(),
         ];
         timers.into_iter().flatten().min()
     }
@@ -171,6 +172,7 @@ impl Slave {
             self.boot(now);
         }
         self.wake_error_control(now);
+        self.wake_sdo(now);
         self.produce_sync(now, application);
         self.wake_tpdos(now);
         self.queue.flush(now, port, out);
