@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::BlockTransfer;
+
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
 pub struct Behaviour {
@@ -18,6 +20,8 @@ pub struct Behaviour {
     pub tpdo_with_first_sync: bool,
     /// A heartbeat is sent at once when 1017h is written; it may also wait for its first period.
     pub heartbeat_on_write: bool,
+    /// SDO block transfer.
+    pub block: BlockTransfer,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -191,6 +195,7 @@ impl Default for Behaviour {
             remote_frames_answered: true,
             tpdo_with_first_sync: false,
             heartbeat_on_write: false,
+            block: BlockTransfer::default(),
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,

@@ -5,6 +5,7 @@
 mod abort;
 mod address;
 mod behaviour;
+pub(crate) mod block_faults;
 mod cob_id;
 mod consumers;
 mod emergency;
@@ -37,4 +38,5 @@ pub(crate) use emergency::HARDWARE;
 use nmt::State;
 pub(crate) use objects::Objects;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
+pub use sdo::{BlockTransfer, Recovery};
 pub(crate) use slave::{Factory, Slave};

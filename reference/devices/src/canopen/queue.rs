@@ -72,6 +72,12 @@ impl Queue {
         self.pending.retain(|pending| permitted(pending.service));
     }
 
+    /// Forgets the frames with this identifier.
+    pub(crate) fn forget(&mut self, id: StandardId) {
+        self.pending
+            .retain(|pending| pending.frame.standard_id() != Some(id));
+    }
+
     pub(crate) fn clear(&mut self) {
         self.pending.clear();
     }

@@ -180,6 +180,8 @@ impl Slave {
             self.error_control.due(),
             self.sync.next,
             self.tpdos_due(),
+            self.sdo.deadline(),
+            self.second_sdo.1.deadline(),
             self.rpdos_due(),
             self.consumers.due(),
             self.clock.next,
@@ -203,6 +205,8 @@ impl Slave {
             self.boot(now);
         }
         self.wake_error_control(now);
+        self.wake_sdo(now);
+        self.with_second_sdo(|slave| slave.wake_sdo(now));
         self.wake_consumers(now);
         self.wake_rpdos(now);
         self.produce_sync(now, application);

@@ -26,6 +26,16 @@ pub(crate) const HEARTBEAT_AT_ONCE: Variant = Variant {
     apply: |behaviour| behaviour.canopen.heartbeat_on_write = true,
 };
 
+pub(crate) const SMALL_BLOCKS: Variant = Variant {
+    name: "small-blocks",
+    words: "takes blocks of 4 segments, gives no size before a block upload and never switches to the ordinary one",
+    apply: |behaviour| {
+        behaviour.canopen.block.block_size = 4;
+        behaviour.canopen.block.size_given = false;
+        behaviour.canopen.block.switches = false;
+    },
+};
+
 pub(crate) const SLOW: Variant = Variant {
     name: "slow",
     words: "takes 10 to 15 ms for every answer",

@@ -10,7 +10,8 @@ use fieldproof_link::{
 };
 
 use crate::canopen::{
-    self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults, service_faults,
+    self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
+    block_faults, faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -45,8 +46,14 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_SERIAL_IGNORED,
     faults::LSS_BIT_TIMING_MISSING,
 ];
-const FAULTS: [Fault; faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len()] =
-    all_of(&[faults::COMMON, service_faults::ALL, OWN_FAULTS]);
+const FAULTS: [Fault;
+    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
+    all_of(&[
+        faults::COMMON,
+        service_faults::ALL,
+        OWN_FAULTS,
+        block_faults::BLOCK,
+    ]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -62,6 +69,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::NO_TPDO_ON_START,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
+        canopen::variants::SMALL_BLOCKS,
     ],
     build,
 };
@@ -72,6 +80,15 @@ static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
     ))
     .dictionary
 });
+
+fn documented() -> Behaviour {
+    let mut behaviour = Behaviour::default();
+    behaviour.canopen.block = BlockTransfer {
+        offered: true,
+        ..BlockTransfer::default()
+    };
+    behaviour
+}
 
 fn profile() -> Profile {
     Profile {
@@ -94,7 +111,7 @@ fn profile() -> Profile {
 }
 
 fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
-    let behaviour = KIND.behaviour(Behaviour::default(), settings)?;
+    let behaviour = KIND.behaviour(documented(), settings)?;
     let factory = Factory {
         node: settings.node.unwrap_or(NODE),
         bit_rate: BIT_RATE,
