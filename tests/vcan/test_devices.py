@@ -12,7 +12,6 @@ import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -20,6 +19,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from bench import FIELDPROOF, ROOT, UNCERTAINTY, Device, bench_file, running, served
+from runs import FoldersAndRuns, Run
 
 PYTHON = os.environ.get("PYTHON", str(ROOT / "target/python/bin/python"))
 
@@ -28,9 +28,6 @@ KINDS = {"kinco": "kinco-servo", "huacheng": "huacheng-ssts1", "encoder": "liaom
 COMPLETE = {"complete": "canopen-complete"}
 INTERFACES = dict(zip(KINDS | COMPLETE, ["vcan0", "vcan1", "vcan2", "vcan3", "vcan4"]))
 NODES = {"kinco": 1, "huacheng": 1, "encoder": 32, "teco": 1, "complete": 10}
-
-RUN_SECONDS = 400
-
 
 def written_in_python(name: str) -> Device:
     """A device on python-can and canopen, which share no line with us."""
@@ -41,50 +38,8 @@ def written_in_python(name: str) -> Device:
     return Device(name, KINDS[name], command, {"can": link}, node=NODES[name])
 
 
-class Run:
-    """One run of the program on devices that are there."""
-
-    def __init__(self, folder: pathlib.Path, devices: list[Device], *arguments: str) -> None:
-        bench = folder / "bench.yaml"
-        bench.write_text(bench_file(devices), encoding="utf-8")
-        self.reports = folder / "reports"
-        command = [FIELDPROOF, "run", *arguments, "--bench", str(bench), "--reports", str(self.reports)]
-        begun = time.monotonic()
-        done = subprocess.run(
-            [*command, "--format", "json"], capture_output=True, text=True, timeout=RUN_SECONDS, check=False
-        )
-        self.seconds = time.monotonic() - begun
-        self.exit = done.returncode
-        self.error = done.stderr
-        self.outcome = json.loads(done.stdout) if done.stdout else {"lanes": []}
-
-    def not_passed(self) -> dict[tuple[str, str], str]:
-        """What failed, broke or could not be decided: its verdict and reason, by device and case."""
-        return {
-            (lane["device"], case["id"]): f'{case["verdict"]}: {case["what"]}'
-            for lane in self.outcome["lanes"]
-            for case in lane["listed"]
-            if case["verdict"] != "deviation"
-        }
-
-    def lane(self, device: str) -> dict:
-        """The summary of one lane."""
-        return next(lane for lane in self.outcome["lanes"] if lane["device"] == device)
-
-
-class OnVcan(unittest.TestCase):
+class OnVcan(FoldersAndRuns):
     """Everything that runs on the buses of this kernel."""
-
-    def setUp(self) -> None:
-        folder = tempfile.TemporaryDirectory(prefix="fieldproof-vcan-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def run_on(self, devices: list[Device], *arguments: str) -> Run:
-        with contextlib.ExitStack() as there:
-            for device in devices:
-                there.enter_context(running(device, self.folder))
-            return Run(self.folder, devices, *arguments)
 
     def passes(self, make: dict[str, Device], least: dict[str, int], *arguments: str) -> Run:
         """All suites pass on all devices. A case that did not is played again, once: a processor that was not there for

@@ -1,11 +1,12 @@
 //! A device on real links, in the thread of its caller.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::port::Port;
 use super::ports::{GivesUp, Ports};
-use crate::{Instant, Line, LinkError, NotOffered, Outbox, Participant, Stimulus};
+use crate::{Instant, Line, LinkError, NotOffered, Outbox, Participant, Stimulus, Transmission};
 
 /// How often the driver looks whether it is to stop, and whether there is a stimulus for the device.
 const LOOK: Duration = Duration::from_millis(50);
@@ -46,6 +47,7 @@ pub fn serve(
         device,
         ports: Ports::new(ports, GivesUp::Silently),
         outbox: Outbox::default(),
+        held: VecDeque::new(),
         now: Instant::START,
     };
     while !stop.load(Ordering::Relaxed) {
@@ -57,6 +59,7 @@ pub fn serve(
             control.done(server.device.stimulate(now, &stimulus, outbox));
         }
         server.send()?;
+        server.release()?;
         server.follow_lines();
         let until = server.ports.clock.now() + LOOK;
         let wake_at = server.device.wake_at();
@@ -71,6 +74,9 @@ struct Server {
     device: Box<dyn Participant>,
     ports: Ports<TheDevice>,
     outbox: Outbox,
+    /// Characters on a line that takes no time for them, until the device has sent them by its own clock: before that,
+    /// it does not listen.
+    held: VecDeque<(Instant, usize, Transmission)>,
     /// The last instant the device was told: for it, time never goes back.
     now: Instant,
 }
@@ -99,8 +105,33 @@ impl Server {
     }
 
     fn send(&mut self) -> Result<(), LinkError> {
-        for (port, what) in self.outbox.drain() {
-            if self.device.line(port) != Line::Off {
+        let pending: Vec<_> = self.outbox.drain().collect();
+        for (port, what) in pending {
+            match (self.device.line(port), &what) {
+                (Line::Off, _) => {}
+                (Line::Serial(settings), Transmission::Characters(characters))
+                    if !self.ports.properties()[port].has_bit_times() =>
+                {
+                    let length = settings.character_time() * characters.len() as u32;
+                    let begin = self
+                        .held
+                        .back()
+                        .map_or(self.now, |held| held.0.max(self.now));
+                    self.held.push_back((begin + length, port, what));
+                }
+                _ => {
+                    self.ports.send(port, TheDevice, what)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends what was held back, once its time has come.
+    fn release(&mut self) -> Result<(), LinkError> {
+        let now = self.now();
+        while self.held.front().is_some_and(|held| held.0 <= now) {
+            if let Some((_, port, what)) = self.held.pop_front() {
                 self.ports.send(port, TheDevice, what)?;
             }
         }
