@@ -18,6 +18,7 @@ mod object_names;
 mod pdo_procedure;
 mod relocate;
 mod restore;
+pub mod scan;
 mod sdo;
 mod serial;
 mod session;
