@@ -20,6 +20,8 @@ mod relocate;
 mod restore;
 pub mod scan;
 mod sdo;
+mod sdo_block;
+mod selected;
 mod serial;
 mod session;
 mod steps;
