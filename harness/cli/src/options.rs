@@ -236,7 +236,7 @@ const SCAN_EXIT_CODES: &str =
 
 Exit codes:
   0  something was found
-  1  nothing was found, or nothing that a bench can be written of
+  1  nothing was found, or nothing that the bench asked for can be written of
   2  the input was wrong
   3  the link cannot be opened, or it broke, or the bench cannot be written";
 

@@ -5,6 +5,7 @@
 mod support;
 
 use std::io::{BufRead, BufReader};
+use std::net::TcpListener;
 use std::process::{Child, Stdio};
 
 use support::Folder;
@@ -29,7 +30,8 @@ fn start(folder: &Folder, arguments: &[&str], is_it: fn(&str) -> bool) -> Runnin
     let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
     let lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let line = lines.map(Result::unwrap).find(|line| is_it(line));
-    let line = line.unwrap_or_else(|| panic!("{arguments:?} ended"));
+    let line = line.unwrap_or_default();
+    assert!(is_it(&line), "{arguments:?} ended");
     Running { child, line }
 }
 
@@ -70,10 +72,7 @@ fn nodes_on_a_bus_are_found_and_put_on_a_bench() {
     let checked = folder.run(&["check", "lab.yaml"]);
     assert_eq!(checked.exit(), Some(0), "{}", checked.error());
     let bench = folder.read("lab.yaml");
-    assert!(
-        bench.contains("  # Node 5 is not described yet.\n"),
-        "{bench}"
-    );
+    assert!(bench.contains("  # Node 5 is not described.\n"), "{bench}");
     assert!(!bench.contains("permits: [writes"), "{bench}");
 
     // It is played on as it stands.
@@ -81,6 +80,12 @@ fn nodes_on_a_bus_are_found_and_put_on_a_bench() {
     let played = [&played[..], &["--device", "teco-jn5-cm-can-7"]].concat();
     let played = folder.run(&[&played[..], &["--case", "canopen.sdo/claimed-identity*"]].concat());
     assert_eq!(played.exit(), Some(0), "{}{}", played.out(), played.error());
+
+    // The link carries one device at a time, so the second is there as a comment.
+    assert!(
+        bench.contains("\n  # - name: canopen-complete-10\n"),
+        "{bench}"
+    );
 
     // Who knows what the third is, says so.
     let again = [
@@ -116,10 +121,12 @@ fn nothing_on_a_bus_is_exit_code_1() {
 #[test]
 fn server_behind_a_port_is_found_and_put_on_a_bench() {
     let folder = Folder::new();
-    // Port 0 is a free one, which the program prints.
-    let arguments = ["serve", "liaomiao-encoder", "--on", "tcp:127.0.0.1:0"];
-    let server = start(&folder, &arguments, |line| line.contains(" is on "));
-    let (_, link) = server.line.split_once(" is on ").unwrap();
+    let free = TcpListener::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap();
+    let link = &format!("tcp:{free}");
+    let _encoder = serve(&folder, "liaomiao-encoder", link, &[]);
 
     let on = [
         "scan",

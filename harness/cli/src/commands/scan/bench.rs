@@ -57,36 +57,33 @@ const fn word(parity: Parity) -> &'static str {
 }
 
 /// The bench of what was found, in the file at `path` if it is to be one; `None` if there is no description of any.
-/// What no description is known of stands there as a comment.
+/// What cannot stand there is a comment: what no description is known of, and all but one device on a link that only one
+/// can use.
 pub(super) fn text(found: &Found, known: &Known, path: Option<&Path>) -> Option<String> {
-    let is_known = |device: &&FoundDevice| entry(device, found, known, path).is_some();
-    let count = found.devices.iter().filter(is_known).count();
-    if count == 0 {
-        return None;
-    }
     let mut text = "language: 1\nbench: found\ndevices:\n".to_owned();
-    if count > 1 && opens_once(&found.link) {
-        text.push_str(
-            "  # The link can be opened once only: `--device NAME` with one of these names plays on that one alone.\n",
-        );
-    }
+    let mut is_empty = true;
     for device in &found.devices {
+        // Writing to a string cannot fail.
         match entry(device, found, known, path) {
-            Some(entry) => text.push_str(&entry),
-            // Writing to a string cannot fail.
-            None => drop(writeln!(
-                text,
-                "  # {} is not described yet.",
-                number(device)
-            )),
+            None => drop(writeln!(text, "  # {} is not described.", number(device))),
+            Some(entry) if is_empty || !opens_once(&found.link) => {
+                text.push_str(&entry);
+                is_empty = false;
+            }
+            Some(entry) => {
+                text.push_str("  # The link can be opened once only, so one of these at a time:\n");
+                for line in entry.lines() {
+                    let _ = writeln!(text, "  #{}", line.strip_prefix(' ').unwrap_or(line));
+                }
+            }
         }
     }
-    Some(text)
+    (!is_empty).then_some(text)
 }
 
-/// An adapter or a serial line has one user.
+/// An adapter and a serial line have one user.
 fn opens_once(link: &str) -> bool {
-    link.starts_with("serial:") || (link.starts_with("slcan:") && !link.starts_with("slcan:tcp:"))
+    link.starts_with("serial:") || link.starts_with("slcan:")
 }
 
 fn number(device: &FoundDevice) -> String {
