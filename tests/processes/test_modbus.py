@@ -94,7 +94,7 @@ class Modbus(FoldersAndRuns):
         kind = "liaomiao-encoder"
         link = f"tcp:127.0.0.1:{free_port()}"
         device = Device(kind, kind, [FIELDPROOF, "serve", kind, "--on", link], {"serial": link})
-        with self.assertRaisesRegex(AssertionError, "ended early"), running(device, self.folder) as process:
+        with self.assertRaisesRegex(AssertionError, "ended"), running(device, self.folder) as process:
             run = self.start([device], "liaomiao-encoder.modbus")
             self.wait_for_a_case(run)
             process.kill()
