@@ -117,17 +117,23 @@ impl SocketCan {
         clock: &mut Clock,
         news: &mut Vec<News>,
     ) -> Result<usize, LinkError> {
-        let mut messages = [Message::EMPTY; BATCH];
-        let messages = &mut messages[..count];
-        let count = match receive(&self.socket, messages, flags) {
-            Ok(count) => count,
+        let mut buffers = [[0; FRAME_LENGTH]; BATCH];
+        let mut slices = buffers.each_mut().map(|it| [IoSliceMut::new(it)]);
+        let ancillary = cmsg_space!(TimeSpec, [TimeSpec; 3], u32);
+        // Not kept for the next time: the kernel shortens the room in them to what it has used.
+        let mut headers = MultiHeaders::<()>::preallocate(count, Some(ancillary));
+        let room = slices.iter_mut().take(count);
+        let received = match recvmmsg(self.socket.as_raw_fd(), &mut headers, room, flags, None) {
+            Ok(received) => received,
             Err(Errno::EAGAIN | Errno::EINTR) => return Ok(0),
             Err(error) => return Err(down(&self.properties, error)),
         };
-        for message in &messages[..count] {
-            news.extend(self.news(message, clock)?);
+        let mut taken = 0;
+        for message in received {
+            news.extend(self.news(&Message::read(&message), clock)?);
+            taken += 1;
         }
-        Ok(count)
+        Ok(taken)
     }
 
     /// One message of the socket.
@@ -304,7 +310,6 @@ fn stamping_uncertainty(interface: &str) -> Duration {
 }
 
 /// One message of the socket, as the kernel gives it.
-#[derive(Clone, Copy)]
 struct Message {
     bytes: [u8; FRAME_LENGTH],
     kernel_stamp: Option<SystemTime>,
@@ -314,51 +319,35 @@ struct Message {
 }
 
 impl Message {
-    const EMPTY: Message = Message {
-        bytes: [0; FRAME_LENGTH],
-        kernel_stamp: None,
-        hardware_stamp: None,
-        dropped: 0,
-    };
-
-    fn read_ancillary(&mut self, received: &RecvMsg<'_, '_, ()>) {
-        let Ok(ancillary) = received.cmsgs() else {
-            return;
+    fn read(received: &RecvMsg<'_, '_, ()>) -> Message {
+        let mut message = Message {
+            bytes: [0; FRAME_LENGTH],
+            kernel_stamp: None,
+            hardware_stamp: None,
+            dropped: 0,
         };
-        for part in ancillary {
-            match part {
-                ControlMessageOwned::ScmTimestampns(stamp) => {
-                    self.kernel_stamp = Some(SystemTime::UNIX_EPOCH + Duration::from(stamp));
-                }
-                ControlMessageOwned::ScmTimestampsns(Timestamps { system, hw_raw, .. }) => {
-                    let system = Duration::from(system);
-                    self.kernel_stamp =
-                        (!system.is_zero()).then(|| SystemTime::UNIX_EPOCH + system);
-                    let hardware = Duration::from(hw_raw);
-                    self.hardware_stamp = (!hardware.is_zero()).then_some(hardware);
-                }
-                ControlMessageOwned::RxqOvfl(dropped) => self.dropped = dropped,
-                _ => {}
+        for (place, byte) in message.bytes.iter_mut().zip(received.iovs().flatten()) {
+            *place = *byte;
+        }
+        for part in received.cmsgs().into_iter().flatten() {
+            message.read_ancillary(part);
+        }
+        message
+    }
+
+    fn read_ancillary(&mut self, part: ControlMessageOwned) {
+        match part {
+            ControlMessageOwned::ScmTimestampns(stamp) => {
+                self.kernel_stamp = Some(SystemTime::UNIX_EPOCH + Duration::from(stamp));
             }
+            ControlMessageOwned::ScmTimestampsns(Timestamps { system, hw_raw, .. }) => {
+                let system = Duration::from(system);
+                self.kernel_stamp = (!system.is_zero()).then(|| SystemTime::UNIX_EPOCH + system);
+                let hardware = Duration::from(hw_raw);
+                self.hardware_stamp = (!hardware.is_zero()).then_some(hardware);
+            }
+            ControlMessageOwned::RxqOvfl(dropped) => self.dropped = dropped,
+            _ => {}
         }
     }
-}
-
-/// Takes up to as many messages as there is room for; how many.
-fn receive(socket: &CanSocket, messages: &mut [Message], flags: MsgFlags) -> Result<usize, Errno> {
-    let mut buffers = [[0; FRAME_LENGTH]; BATCH];
-    let mut slices = buffers.each_mut().map(|it| [IoSliceMut::new(it)]);
-    let ancillary = cmsg_space!(TimeSpec, [TimeSpec; 3], u32);
-    let mut headers = MultiHeaders::<()>::preallocate(messages.len(), Some(ancillary));
-    let room = slices.iter_mut().take(messages.len());
-    let received = recvmmsg(socket.as_raw_fd(), &mut headers, room, flags, None)?;
-    let mut count = 0;
-    for (received, message) in received.zip(messages.iter_mut()) {
-        message.read_ancillary(&received);
-        count += 1;
-    }
-    for (buffer, message) in buffers.iter().zip(messages.iter_mut()) {
-        message.bytes = *buffer;
-    }
-    Ok(count)
 }
