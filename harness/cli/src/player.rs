@@ -147,6 +147,7 @@ pub(crate) fn preview<'l>(
                         &lowered,
                         suite.head.protocol,
                         &device.description,
+                        device.dictionary.as_ref(),
                         &bench,
                     ),
                     id: lowered.id,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use fieldproof_dictionary::eds::manual::Table;
 use fieldproof_dictionary::{Dictionary, eds};
-use fieldproof_suite::model::{Case, Located, ReadExpectation, Step, WriteExpectation};
+use fieldproof_suite::model::{Case, Located, ReadExpectation, SdoObject, Step, WriteExpectation};
 use fieldproof_suite::{Environment, SourceFile, load};
 
 /// Each device with its EDS and how its suites call the documents that are its manual.
@@ -57,16 +57,23 @@ fn judged(steps: &[Located<Step>]) -> Vec<(u16, u8)> {
     for step in steps {
         match &step.value {
             Step::SdoRead(read) if read.expect != ReadExpectation::Any => {
-                objects.push((read.object.index, read.object.sub));
+                objects.extend(address(read.object));
             }
             Step::SdoWrite(write) if write.expect != WriteExpectation::Ok => {
-                objects.push((write.object.index, write.object.sub));
+                objects.extend(address(write.object));
             }
             Step::Repeat(repeat) => objects.extend(judged(&repeat.steps)),
             _ => {}
         }
     }
     objects
+}
+
+fn address(object: SdoObject) -> Option<(u16, u8)> {
+    match object {
+        SdoObject::Address(address) => Some((address.index, address.sub)),
+        SdoObject::WritableDomain => None,
+    }
 }
 
 /// The objects that `case` judges, that the EDS has and the manual does not print, if it cites the manual alone.

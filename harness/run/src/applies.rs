@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use fieldproof_dictionary::Dictionary;
 use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature};
 use fieldproof_suite::model::{
@@ -9,6 +10,7 @@ use fieldproof_suite::model::{
     SendBytes, Step, StimulusName,
 };
 
+use crate::selected::missing_object;
 use crate::tester::SERIAL;
 
 /// What the bench has and permits.
@@ -35,12 +37,14 @@ pub fn skip_reason(
     case: &Case,
     protocol: Protocol,
     device: &DeviceDescription,
+    dictionary: Option<&Dictionary>,
     bench: &Bench,
 ) -> Option<String> {
     missing_port(protocol, bench)
         .or_else(|| missing_need(case, device, bench))
         .or_else(|| rtu_alone(case, bench))
         .or_else(|| missing_claim(case, device))
+        .or_else(|| missing_objects(case, dictionary))
         .or_else(|| missing_permission(case, device, bench))
         .or_else(|| wrong_address(case, bench))
         .or_else(|| fixed_rate(case, bench))
@@ -69,6 +73,21 @@ fn missing_need(case: &Case, device: &DeviceDescription, bench: &Bench) -> Optio
             stimulus_name(*name)
         )),
         _ => None,
+    })
+}
+
+fn missing_objects(case: &Case, dictionary: Option<&Dictionary>) -> Option<String> {
+    let steps = case.control.iter().chain(&case.steps);
+    lacks_object(steps, dictionary).map(str::to_owned)
+}
+
+fn lacks_object<'s>(
+    steps: impl IntoIterator<Item = &'s Located<Step>>,
+    dictionary: Option<&Dictionary>,
+) -> Option<&'static str> {
+    steps.into_iter().find_map(|step| match &step.value {
+        Step::Repeat(repeat) => lacks_object(&repeat.steps, dictionary),
+        step => missing_object(step, dictionary),
     })
 }
 

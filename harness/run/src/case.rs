@@ -76,6 +76,7 @@ impl Tester<'_> {
         self.notes.clear();
         self.restores_by_steps = !case.restore.steps.is_empty();
         self.steps_begun = false;
+        self.open_transfer = None;
         let mut findings = Findings::default();
 
         if let Err(stop) = self.prepare(case) {

@@ -270,7 +270,13 @@ impl<'a> Player<'a> {
                 started_ns,
                 place(case.at),
             ))));
-        let skipped = skip_reason(&case, suite.head.protocol, self.job.device, self.job.bench);
+        let skipped = skip_reason(
+            &case,
+            suite.head.protocol,
+            self.job.device,
+            self.job.dictionary,
+            self.job.bench,
+        );
         let outcome = match &skipped {
             Some(_) => CaseOutcome::skipped(),
             None => self.play_and_inspect(&case, &place),

@@ -19,6 +19,8 @@ mod pdo_procedure;
 mod relocate;
 mod restore;
 mod sdo;
+mod sdo_block;
+mod selected;
 mod serial;
 mod session;
 mod steps;

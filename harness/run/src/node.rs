@@ -7,7 +7,7 @@ use fieldproof_link::Instant;
 use fieldproof_suite::model::NmtState;
 use fieldproof_wire::canopen::nmt::{Command, NmtMessage};
 use fieldproof_wire::canopen::sdo::{Request, Transfer};
-use fieldproof_wire::canopen::{NodeId, Service, cob_id};
+use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id};
 
 /// What is known of the node.
 #[derive(Debug, Clone)]
@@ -140,16 +140,20 @@ impl NodeWatch {
             object,
             transfer: Transfer::Expedited(data),
         }) = Request::parse(frame.bytes())
-            && object.index == 0x1017
         {
-            let milliseconds = data
-                .bytes()
-                .iter()
-                .rev()
-                .fold(0, |value, byte| value << 8 | u64::from(*byte));
-            let period = (milliseconds != 0).then(|| Duration::from_millis(milliseconds));
-            self.set_heartbeat(period.is_some(), period, None);
+            self.wrote(object, data.bytes());
         }
+    }
+
+    /// The client is about to end a download of `value`.
+    pub(crate) fn wrote(&mut self, object: Multiplexer, value: &[u8]) {
+        if object.index != 0x1017 {
+            return;
+        }
+        let bytes = value.iter().take(4).rev();
+        let milliseconds = bytes.fold(0, |value, byte| value << 8 | u64::from(*byte));
+        let period = (milliseconds != 0).then(|| Duration::from_millis(milliseconds));
+        self.set_heartbeat(period.is_some(), period, None);
     }
 
     fn set_heartbeat(&mut self, on: bool, period: Option<Duration>, at: Option<Instant>) {

@@ -7,7 +7,6 @@ use fieldproof_wire::canopen::sdo::{Data, RawSdo, Request, Response, Segment, Tr
 use fieldproof_wire::canopen::{AbortCode, Multiplexer, Service, cob_id};
 use fieldproof_wire::describe::describe_frame;
 
-use crate::session::Received;
 use crate::stop::{Came, Stop};
 use crate::tester::Tester;
 
@@ -35,7 +34,7 @@ impl Uploaded {
         }
     }
 
-    fn sized(bytes: Vec<u8>) -> Uploaded {
+    pub(crate) fn sized(bytes: Vec<u8>) -> Uploaded {
         Uploaded {
             bytes,
             size_is_given: true,
@@ -43,14 +42,33 @@ impl Uploaded {
     }
 }
 
+/// Of the two ordinary protocols, the one that must be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Only {
+    /// At most 4 bytes, in the initiate frames.
+    Expedited,
+    /// In segments, whatever the size.
+    Segmented,
+}
+
 /// A value longer than this is not what a field device has; a server that never ends would otherwise fill the memory.
-const LONGEST_VALUE: usize = 1 << 20;
+pub(crate) const LONGEST_VALUE: usize = 1 << 20;
 
 impl Tester<'_> {
     /// Reads an object: expedited or segmented, as the server chooses.
     pub(crate) fn sdo_upload(
         &mut self,
         object: Multiplexer,
+        within: Duration,
+    ) -> Result<Outcome<Uploaded>, Stop> {
+        self.sdo_upload_by(object, None, within)
+    }
+
+    /// Reads an object, and fails if the server chooses another protocol than `only`.
+    pub(crate) fn sdo_upload_by(
+        &mut self,
+        object: Multiplexer,
+        only: Option<Only>,
         within: Duration,
     ) -> Result<Outcome<Uploaded>, Stop> {
         match self.sdo_exchange(Request::InitiateUpload(object), within)? {
@@ -63,24 +81,33 @@ impl Tester<'_> {
                 transfer,
             } => {
                 check_object("the answer to the read", object, named)?;
-                match transfer {
-                    Transfer::Expedited(data) => {
-                        Ok(Outcome::Done(Uploaded::sized(data.bytes().to_vec())))
-                    }
-                    Transfer::ExpeditedUnsized(data) => Ok(Outcome::Done(Uploaded {
-                        bytes: data.to_vec(),
-                        size_is_given: false,
-                    })),
-                    Transfer::Segmented { size } => {
-                        // Until the last segment has come the server waits for the next request.
-                        self.open_transfer = Some(object);
-                        let value = self.upload_segments(object, size, within)?;
-                        self.open_transfer = None;
-                        Ok(value)
-                    }
-                }
+                check_protocol(only, transfer)?;
+                self.finish_upload(object, transfer, within)
             }
             other => Err(wrong_service("an answer to initiate upload", &other)),
+        }
+    }
+
+    /// Takes the value that an ordinary upload was answered with.
+    pub(crate) fn finish_upload(
+        &mut self,
+        object: Multiplexer,
+        transfer: Transfer,
+        within: Duration,
+    ) -> Result<Outcome<Uploaded>, Stop> {
+        match transfer {
+            Transfer::Expedited(data) => Ok(Outcome::Done(Uploaded::sized(data.bytes().to_vec()))),
+            Transfer::ExpeditedUnsized(data) => Ok(Outcome::Done(Uploaded {
+                bytes: data.to_vec(),
+                size_is_given: false,
+            })),
+            Transfer::Segmented { size } => {
+                // Until the last segment has come the server waits for the next request.
+                self.open_transfer = Some(object);
+                let value = self.upload_segments(object, size, within)?;
+                self.open_transfer = None;
+                Ok(value)
+            }
         }
     }
 
@@ -135,9 +162,26 @@ impl Tester<'_> {
         value: &[u8],
         within: Duration,
     ) -> Result<Outcome<()>, Stop> {
-        let transfer = match Data::new(value) {
-            Some(data) => Transfer::Expedited(data),
-            None => Transfer::Segmented {
+        self.sdo_download_by(object, value, None, within)
+    }
+
+    /// Writes an object by one of the two ordinary protocols.
+    pub(crate) fn sdo_download_by(
+        &mut self,
+        object: Multiplexer,
+        value: &[u8],
+        only: Option<Only>,
+        within: Duration,
+    ) -> Result<Outcome<()>, Stop> {
+        let transfer = match (Data::new(value), only) {
+            (Some(data), None | Some(Only::Expedited)) => Transfer::Expedited(data),
+            (None, Some(Only::Expedited)) => {
+                return Err(Stop::Bench(format!(
+                    "{} bytes cannot be written expedited",
+                    value.len()
+                )));
+            }
+            (_, Some(Only::Segmented)) | (None, None) => Transfer::Segmented {
                 size: Some(value.len() as u32),
             },
         };
@@ -180,6 +224,9 @@ impl Tester<'_> {
                 last: number + 1 == count,
                 data,
             };
+            if segment.last {
+                self.watch.wrote(object, value);
+            }
             match self.sdo_exchange(Request::DownloadSegment(segment), within)? {
                 Response::Abort {
                     object: named,
@@ -208,9 +255,31 @@ impl Tester<'_> {
 
     /// One request and its answer.
     fn sdo_exchange(&mut self, request: Request, within: Duration) -> Result<Response, Stop> {
+        self.sdo_exchange_bytes(request.encode(), within)
+    }
+
+    /// One request, right or wrong, and its answer.
+    pub(crate) fn sdo_exchange_bytes(
+        &mut self,
+        request: [u8; 8],
+        within: Duration,
+    ) -> Result<Response, Stop> {
+        self.send_sdo(request)?;
+        self.sdo_answer("SDO response time", within)
+    }
+
+    pub(crate) fn send_sdo(&mut self, request: [u8; 8]) -> Result<(), Stop> {
         let request_id = self.identifier(Service::SdoRequest)?;
+        self.send_frame(Frame::of_eight(request_id, request))
+    }
+
+    /// The answer to what was sent last; `time` is what its measurement is called.
+    pub(crate) fn sdo_answer(
+        &mut self,
+        time: &'static str,
+        within: Duration,
+    ) -> Result<Response, Stop> {
         let response_id = self.identifier(Service::SdoResponse)?;
-        self.send_frame(Frame::of_eight(request_id, request.encode()))?;
         let Some((frame, received)) = self.first_frame(Id::Standard(response_id), within)? else {
             return Err(Stop::mismatch(
                 "the SDO server does not answer",
@@ -220,24 +289,22 @@ impl Tester<'_> {
             ));
         };
         self.watch.confirmed(received.at);
-        self.judge_sdo_time(&received, within)?;
+        self.measure_response(time, &received, within)?;
         read_response(&frame)
-    }
-
-    fn judge_sdo_time(&mut self, received: &Received, within: Duration) -> Result<(), Stop> {
-        self.measure_response("SDO response time", received, within)
     }
 }
 
-fn read_response(frame: &Frame) -> Result<Response, Stop> {
-    let malformed = |expected: String, found: String| {
-        Stop::mismatch(
-            "the SDO answer is malformed",
-            expected,
-            found,
-            Came::Frame(*frame),
-        )
-    };
+pub(crate) fn malformed(frame: &Frame, expected: String, found: String) -> Stop {
+    Stop::mismatch(
+        "the SDO answer is malformed",
+        expected,
+        found,
+        Came::Frame(*frame),
+    )
+}
+
+pub(crate) fn read_response(frame: &Frame) -> Result<Response, Stop> {
+    let malformed = |expected, found| malformed(frame, expected, found);
     if frame.is_remote() {
         return Err(malformed("a data frame".into(), "a remote frame".into()));
     }
@@ -248,12 +315,32 @@ fn read_response(frame: &Frame) -> Result<Response, Stop> {
         })
 }
 
-fn refused<T>(asked: Multiplexer, named: Multiplexer, code: AbortCode) -> Result<Outcome<T>, Stop> {
+fn check_protocol(only: Option<Only>, came: Transfer) -> Result<(), Stop> {
+    let (expected, found) = match (only, came) {
+        (Some(Only::Expedited), Transfer::Segmented { .. }) => ("expedited", "segmented"),
+        (Some(Only::Segmented), Transfer::Expedited(_) | Transfer::ExpeditedUnsized(_)) => {
+            ("segmented", "expedited")
+        }
+        _ => return Ok(()),
+    };
+    Err(Stop::mismatch(
+        "the server chooses another protocol for the upload",
+        expected,
+        found,
+        Came::Answer,
+    ))
+}
+
+pub(crate) fn refused<T>(
+    asked: Multiplexer,
+    named: Multiplexer,
+    code: AbortCode,
+) -> Result<Outcome<T>, Stop> {
     check_object("the abort", asked, named)?;
     Ok(Outcome::Refused(code))
 }
 
-fn check_object(what: &str, asked: Multiplexer, named: Multiplexer) -> Result<(), Stop> {
+pub(crate) fn check_object(what: &str, asked: Multiplexer, named: Multiplexer) -> Result<(), Stop> {
     if asked == named {
         return Ok(());
     }
@@ -277,7 +364,7 @@ fn check_toggle(answered: bool, asked: bool) -> Result<(), Stop> {
     ))
 }
 
-fn wrong_service(expected: &str, came: &Response) -> Stop {
+pub(crate) fn wrong_service(expected: &str, came: &Response) -> Stop {
     let frame = Frame::of_eight(cob_id(Service::SdoResponse, None), came.encode());
     Stop::mismatch(
         "the SDO server answers with another service",

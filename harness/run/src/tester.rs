@@ -48,7 +48,7 @@ pub(crate) struct Tester<'a> {
     pub(crate) sync_producer: Option<CompanionIndex>,
     /// The case says itself how what it changes is put back.
     pub(crate) restores_by_steps: bool,
-    /// The object of a segmented transfer that has not ended.
+    /// The object of a segmented or block transfer that has not ended.
     pub(crate) open_transfer: Option<Multiplexer>,
     /// Whether a step of the case itself, not only of its control, has begun.
     pub(crate) steps_begun: bool,

@@ -7,6 +7,7 @@ use std::time::Duration;
 use fieldproof_suite::model::{Decode, ValueType};
 use fieldproof_suite::scalar::{Decimal, Number, Value};
 
+use crate::modbus::show_bytes;
 use crate::stop::Stop;
 
 /// A value that came from the device.
@@ -14,7 +15,11 @@ use crate::stop::Stop;
 pub(crate) enum Actual {
     Number(i128),
     Text(String),
+    Bytes(Vec<u8>),
 }
+
+/// The most bytes of a value that are shown.
+const MOST_SHOWN: usize = 24;
 
 impl fmt::Display for Actual {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -23,6 +28,13 @@ impl fmt::Display for Actual {
             Actual::Number(number) if *number < 0 => write!(f, "{number}"),
             Actual::Number(number) => write!(f, "{number} ({number:X}h)"),
             Actual::Text(text) => write!(f, "{text:?}"),
+            Actual::Bytes(bytes) => {
+                let (shown, more) = match bytes.get(..MOST_SHOWN) {
+                    Some(shown) if bytes.len() > MOST_SHOWN => (shown, " .."),
+                    _ => (bytes.as_slice(), ""),
+                };
+                write!(f, "{} bytes: {}{more}", bytes.len(), show_bytes(shown))
+            }
         }
     }
 }
@@ -38,7 +50,7 @@ pub(crate) const fn size(value_type: ValueType) -> Option<usize> {
         ValueType::U24 => Some(3),
         ValueType::U32 | ValueType::I32 => Some(4),
         ValueType::U64 | ValueType::I64 => Some(8),
-        ValueType::Text => None,
+        ValueType::Text | ValueType::Bytes => None,
     }
 }
 
@@ -51,6 +63,9 @@ const fn is_signed(value_type: ValueType) -> bool {
 
 /// `bytes`, least significant first, as a value of a type; `None` if there are too few or too many.
 pub(crate) fn decode(value_type: ValueType, bytes: &[u8]) -> Option<Actual> {
+    if value_type == ValueType::Bytes {
+        return Some(Actual::Bytes(bytes.to_vec()));
+    }
     let Some(size) = size(value_type) else {
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
         return Some(Actual::Text(text.trim_end_matches('\0').to_owned()));
@@ -79,11 +94,12 @@ pub(crate) fn encode(
 ) -> Result<Vec<u8>, Stop> {
     let number = match resolve(value, unit, saved)? {
         Actual::Text(text) => return Ok(text.into_bytes()),
+        Actual::Bytes(bytes) => return Ok(bytes),
         Actual::Number(number) => number,
     };
     let Some(size) = size(value_type) else {
         return Err(Stop::Bench(format!(
-            "the number {number} cannot be written as a text"
+            "the number {number} cannot be written as a text or as bytes"
         )));
     };
     let top = 1_i128 << (size * 8 - 1);
@@ -113,6 +129,7 @@ pub(crate) fn resolve(
     match value {
         Value::Number(number) => Ok(Actual::Number(*number)),
         Value::Text(text) => Ok(Actual::Text(text.clone())),
+        Value::Bytes(bytes) => Ok(Actual::Bytes(bytes.clone())),
         Value::Saved(name) => lookup(name, saved).cloned(),
         Value::Duration(duration) => match unit {
             None => Err(Stop::Bench(
@@ -137,6 +154,12 @@ pub(crate) fn register(number: &Number, saved: &Saved) -> Result<u16, Stop> {
             Actual::Text(text) => {
                 return Err(Stop::Bench(format!(
                     "{name:?} was saved as the text {text:?}"
+                )));
+            }
+            Actual::Bytes(bytes) => {
+                return Err(Stop::Bench(format!(
+                    "{name:?} was saved as {} bytes",
+                    bytes.len()
                 )));
             }
         },

@@ -9,7 +9,7 @@ use fieldproof_can::{Frame, StandardId};
 use fieldproof_devices::{DeviceKind, Settings, kind, kinds};
 use fieldproof_link::{Instant, Outbox, Participant, Reception, Stimulus, Transmission};
 
-const SUITES: [&str; 10] = [
+const SUITES: [&str; 12] = [
     "boot-up",
     "emergency",
     "error-control",
@@ -19,7 +19,9 @@ const SUITES: [&str; 10] = [
     "nmt",
     "pdo",
     "sdo",
+    "store",
     "sync",
+    "time",
 ];
 
 /// Every way to build a device of a kind: as it is, with each fault, as each variant.

@@ -25,7 +25,9 @@ fn data() -> impl Strategy<Value = Vec<u8>> {
         Just(0x1003_u16),
         Just(0x1005),
         Just(0x1006),
-        0x1008_u16..0x1019,
+        0x1008_u16..0x101A,
+        Just(0x1029),
+        Just(0x1201),
         0x1400_u16..0x1404,
         0x1600_u16..0x1604,
         0x1800_u16..0x1804,
@@ -46,7 +48,9 @@ fn data() -> impl Strategy<Value = Vec<u8>> {
 
 fn event() -> impl Strategy<Value = Event> {
     let identifier = prop_oneof![
-        1 => prop::sample::select(vec![0x000_u16, 0x080, 0x7E5, 0x701, 0x181, 0x201]),
+        1 => prop::sample::select(vec![
+            0x000_u16, 0x080, 0x100, 0x7E5, 0x701, 0x705, 0x181, 0x201,
+        ]),
         1 => Just(0x601),
         1 => 0_u16..0x800,
     ];

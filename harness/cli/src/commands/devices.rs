@@ -79,7 +79,7 @@ fn identity(identity: &Identity) -> BTreeMap<&'static str, String> {
         let shown = match identity.claimed(claim)?.value {
             Value::Number(number) => format!("{number:#010X}"),
             Value::Text(text) => text,
-            Value::Saved(_) | Value::Duration(_) => return None,
+            Value::Saved(_) | Value::Duration(_) | Value::Bytes(_) => return None,
         };
         Some((claim.name(), shown))
     });

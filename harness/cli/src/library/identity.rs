@@ -84,6 +84,6 @@ fn shown(value: &Value) -> String {
     match value {
         Value::Number(number) => format!("{number:#010X}"),
         Value::Text(text) => format!("{text:?}"),
-        Value::Saved(_) | Value::Duration(_) => String::new(),
+        Value::Saved(_) | Value::Duration(_) | Value::Bytes(_) => String::new(),
     }
 }

@@ -1,23 +1,29 @@
 //! `sdo-read`, `sdo-write`.
 
+use std::time::Duration;
+
 use fieldproof_suite::model::{
-    AbortExpectation, ReadExpectation, SdoRead, SdoWrite, WriteExpectation,
+    AbortExpectation, ReadExpectation, SdoRead, SdoWrite, Transfer, WriteExpectation,
 };
 use fieldproof_wire::canopen::{AbortCode, Multiplexer};
 
 use crate::modbus::show_bytes;
-use crate::sdo::{Outcome, show_abort};
+use crate::sdo::{Only, Outcome, Uploaded, show_abort};
+use crate::sdo_block::Ended;
 use crate::stop::{Came, Stop};
-use crate::tester::{Tester, multiplexer};
+use crate::tester::Tester;
 use crate::value::{Actual, decode, encode, resolve, size};
 
 impl Tester<'_> {
     pub(super) fn sdo_read(&mut self, step: &SdoRead) -> Result<(), Stop> {
-        let object = multiplexer(step.object);
+        let object = self.resolve(step.object)?;
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
-        let value = match self.sdo_upload(object, within)? {
-            Outcome::Done(value) => value,
-            Outcome::Refused(code) => return self.judge_refused_read(step, code),
+        let value = match self.upload_by(object, step.transfer, within)? {
+            Ended::With(Outcome::Done(value)) => value,
+            Ended::With(Outcome::Refused(code)) => {
+                return self.judge_refused_read(object, step, code);
+            }
+            Ended::GivenUp => return Ok(()),
         };
         let bytes = value.of_size(size(step.value_type));
         let Some(actual) = decode(step.value_type, bytes) else {
@@ -46,8 +52,46 @@ impl Tester<'_> {
         Ok(())
     }
 
-    fn judge_refused_read(&mut self, step: &SdoRead, code: AbortCode) -> Result<(), Stop> {
-        let object = multiplexer(step.object);
+    fn upload_by(
+        &mut self,
+        object: Multiplexer,
+        transfer: Option<Transfer>,
+        within: Duration,
+    ) -> Result<Ended<Uploaded>, Stop> {
+        let only = match transfer {
+            Some(Transfer::Block(block)) => return self.sdo_block_upload(object, &block, within),
+            Some(Transfer::Expedited) => Some(Only::Expedited),
+            Some(Transfer::Segmented) => Some(Only::Segmented),
+            None => None,
+        };
+        self.sdo_upload_by(object, only, within).map(Ended::With)
+    }
+
+    fn download_by(
+        &mut self,
+        object: Multiplexer,
+        value: &[u8],
+        transfer: Option<Transfer>,
+        within: Duration,
+    ) -> Result<Ended<()>, Stop> {
+        let only = match transfer {
+            Some(Transfer::Block(block)) => {
+                return self.sdo_block_download(object, value, &block, within);
+            }
+            Some(Transfer::Expedited) => Some(Only::Expedited),
+            Some(Transfer::Segmented) => Some(Only::Segmented),
+            None => None,
+        };
+        let outcome = self.sdo_download_by(object, value, only, within)?;
+        Ok(Ended::With(outcome))
+    }
+
+    fn judge_refused_read(
+        &mut self,
+        object: Multiplexer,
+        step: &SdoRead,
+        code: AbortCode,
+    ) -> Result<(), Stop> {
         match &step.expect {
             ReadExpectation::Abort(abort) => self.check_abort(object, abort, code),
             // A value is recorded whatever it is, so its absence is recorded as well.
@@ -66,12 +110,15 @@ impl Tester<'_> {
     }
 
     pub(super) fn sdo_write(&mut self, step: &SdoWrite) -> Result<(), Stop> {
-        let object = multiplexer(step.object);
+        let object = self.resolve(step.object)?;
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
         let bytes = encode(step.value_type, &step.value, step.unit, &self.saved)?;
         let before = self.value_before(object, bytes.len())?;
         let is_remembered = self.remember_object(object, &before);
-        let outcome = self.sdo_download(object, &bytes, within)?;
+        let outcome = match self.download_by(object, &bytes, step.transfer, within)? {
+            Ended::With(outcome) => outcome,
+            Ended::GivenUp => return self.check_remembered(object, &before),
+        };
         if let Outcome::Refused(_) = outcome
             && is_remembered
         {
@@ -150,9 +197,13 @@ impl Tester<'_> {
             ReadExpectation::Value(value) => {
                 let expected = resolve(value, None, saved)?;
                 if expected == *actual {
-                    Ok(())
-                } else {
-                    wrong(expected.to_string())
+                    return Ok(());
+                }
+                match first_difference(&expected, actual) {
+                    None => wrong(expected.to_string()),
+                    Some(place) => wrong(expected.to_string()).map_err(|stop| {
+                        stop.with_note(format!("they differ from byte {place} on"))
+                    }),
                 }
             }
             ReadExpectation::OneOf(values) => {
@@ -190,9 +241,22 @@ impl Tester<'_> {
     }
 }
 
+/// The first byte in which two values of bytes differ, counted from 0.
+fn first_difference(expected: &Actual, actual: &Actual) -> Option<usize> {
+    let (Actual::Bytes(expected), Actual::Bytes(actual)) = (expected, actual) else {
+        return None;
+    };
+    let pairs = expected.iter().zip(actual);
+    Some(
+        pairs
+            .take_while(|(expected, actual)| expected == actual)
+            .count(),
+    )
+}
+
 fn came(actual: &Actual) -> Came {
     match actual {
         Actual::Number(number) => Came::Value(*number),
-        Actual::Text(_) => Came::Answer,
+        Actual::Text(_) | Actual::Bytes(_) => Came::Answer,
     }
 }

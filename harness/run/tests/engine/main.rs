@@ -6,6 +6,7 @@
     reason = "a test may fail this way"
 )]
 
+mod blocks;
 mod judging;
 mod restoring;
 mod scripted;

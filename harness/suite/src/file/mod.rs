@@ -8,6 +8,7 @@ mod modbus;
 mod sdo;
 mod short;
 mod stimulate;
+mod transfer;
 mod value;
 
 pub(crate) use bench::*;

@@ -5,16 +5,18 @@ use std::time::Duration;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::transfer::{Direction, TransferFile};
 use super::value::{RawValue, counts};
 use crate::code;
 use crate::forms::{Either, OneOrMany, TwoForms};
 use crate::identity::Claim;
 use crate::model::{
-    AbortExpectation, Located, ReadExpectation, SdoRead, SdoWrite, ValueType, WriteExpectation,
+    AbortExpectation, BlockMistake, Located, ReadExpectation, SdoObject, SdoRead, SdoWrite,
+    Transfer, ValueType, WriteExpectation,
 };
 use crate::problem::Wrong;
 use crate::read_with::optional_time;
-use crate::scalar::{ObjectAddress, Time, TimeUnit, Value};
+use crate::scalar::{Time, TimeUnit, Value};
 
 /// Reads an object.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -22,7 +24,10 @@ use crate::scalar::{ObjectAddress, Time, TimeUnit, Value};
 #[schemars(rename = "SdoRead")]
 pub(crate) struct SdoReadFile {
     /// The object.
-    object: ObjectAddress,
+    object: SdoObject,
+    /// By which protocol; without it, as the server chooses.
+    #[serde(default)]
+    transfer: Option<Located<Either<TransferFile>>>,
     /// Its type; the answer must have its size.
     #[serde(rename = "as")]
     value_type: ValueType,
@@ -214,6 +219,10 @@ impl TryFrom<SdoReadFile> for SdoRead {
                 lowered.map_err(|wrong| wrong.or_at(expect.at))?
             }
         };
+        let transfer = transfer(file.transfer, Direction::Read)?;
+        if gives_up(transfer) && (expect != ReadExpectation::Any || file.save.is_some()) {
+            return Err(nothing_comes());
+        }
         if matches!(expect, ReadExpectation::Abort(_)) && file.save.is_some() {
             return Err(Wrong::new(
                 code::KEYS_TOGETHER,
@@ -223,6 +232,7 @@ impl TryFrom<SdoReadFile> for SdoRead {
         }
         Ok(SdoRead {
             object: file.object,
+            transfer,
             value_type: file.value_type,
             expect,
             within: file.within,
@@ -233,13 +243,39 @@ impl TryFrom<SdoReadFile> for SdoRead {
     }
 }
 
+fn transfer(
+    file: Option<Located<Either<TransferFile>>>,
+    direction: Direction,
+) -> Result<Option<Transfer>, Wrong> {
+    file.map(|file| {
+        let lowered = file.value.0.lower(direction);
+        lowered.map_err(|wrong| wrong.or_at(file.at))
+    })
+    .transpose()
+}
+
+fn gives_up(transfer: Option<Transfer>) -> bool {
+    matches!(transfer, Some(Transfer::Block(block)) if block.mistake.is_some_and(BlockMistake::gives_up))
+}
+
+fn nothing_comes() -> Wrong {
+    Wrong::new(
+        code::KEYS_TOGETHER,
+        "a transfer that the tester gives up has no outcome",
+        "expected neither `expect` nor `save` beside `mistake: abort` and `mistake: abandon`",
+    )
+}
+
 /// Writes an object; put back after the case.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(rename = "SdoWrite")]
 pub(crate) struct SdoWriteFile {
     /// The object.
-    object: ObjectAddress,
+    object: SdoObject,
+    /// By which protocol; without it, expedited up to 4 bytes and else segmented.
+    #[serde(default)]
+    transfer: Option<Located<Either<TransferFile>>>,
     /// The type it is sent as.
     #[serde(rename = "as")]
     value_type: ValueType,
@@ -306,6 +342,10 @@ impl TryFrom<SdoWriteFile> for SdoWrite {
         let unit = file.unit.map(|unit| unit.0);
         let value = file.value.value.lower(file.value_type, unit);
         let value = value.map_err(|wrong| wrong.or_at(file.value.at))?;
+        let transfer = transfer(file.transfer, Direction::Write)?;
+        if gives_up(transfer) && file.expect.is_some() {
+            return Err(nothing_comes());
+        }
         let expect = match file.expect {
             None => WriteExpectation::Ok,
             Some(expect) => match expect.value.0 {
@@ -317,6 +357,7 @@ impl TryFrom<SdoWriteFile> for SdoWrite {
         };
         Ok(SdoWrite {
             object: file.object,
+            transfer,
             value_type: file.value_type,
             value,
             unit,

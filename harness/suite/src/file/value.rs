@@ -9,7 +9,10 @@ use crate::expand::whole;
 use crate::model::ValueType;
 use crate::problem::Wrong;
 use crate::read::ask;
-use crate::scalar::{Text, Time, Value, read_as_text, whole_number};
+use crate::scalar::{Bytes, Text, Time, Value, read_as_text, whole_number};
+
+/// The most bytes that a value is made of by their number.
+const MOST_BYTES: usize = 1 << 16;
 
 /// A value as it is written, before its type is known.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +42,9 @@ impl RawValue {
     ) -> Result<Value, Wrong> {
         if let Some(name) = whole(&self.0) {
             return Ok(Value::Saved(name.to_owned()));
+        }
+        if value_type == ValueType::Bytes {
+            return bytes(&self.0).map(Value::Bytes);
         }
         let Some((low, high)) = value_type.limits() else {
             return Ok(Value::Text(self.0.clone()));
@@ -83,6 +89,31 @@ pub(super) fn counts(time: Duration, unit: Duration) -> i128 {
     (time.as_nanos() / unit.as_nanos().max(1)) as i128
 }
 
+/// `00 11 AA FF`, or `889 bytes` of a fixed sequence.
+fn bytes(text: &str) -> Result<Vec<u8>, Wrong> {
+    let Some(count) = text.strip_suffix(" bytes") else {
+        return Bytes::parse(text).map(|bytes| bytes.0);
+    };
+    match count.parse() {
+        Ok(count) if count <= MOST_BYTES => Ok(sequence(count)),
+        _ => Err(Wrong::new(
+            code::NUMBER,
+            format!("`{text}` is not a number of bytes"),
+            format!("expected 0 to {MOST_BYTES} bytes"),
+        )),
+    }
+}
+
+/// The first bytes of a sequence in which a part that is missing, doubled or moved shows.
+fn sequence(count: usize) -> Vec<u8> {
+    let mut state = 0_u32;
+    let next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state.to_be_bytes()[0]
+    };
+    std::iter::repeat_with(next).take(count).collect()
+}
+
 fn fits(number: i128, low: i128, high: i128, value_type: ValueType) -> Result<i128, Wrong> {
     if (low..=high).contains(&number) {
         return Ok(number);
@@ -109,6 +140,7 @@ impl ValueType {
             ValueType::I64 => "i64",
             ValueType::SignMagnitude16 => "sign-magnitude-16",
             ValueType::Text => "text",
+            ValueType::Bytes => "bytes",
         }
     }
 
@@ -127,7 +159,7 @@ impl ValueType {
             ValueType::I32 => signed(32),
             ValueType::I64 => signed(64),
             ValueType::SignMagnitude16 => Some((-0x7FFF, 0x7FFF)),
-            ValueType::Text => None,
+            ValueType::Text | ValueType::Bytes => None,
         }
     }
 }

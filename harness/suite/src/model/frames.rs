@@ -163,4 +163,6 @@ pub enum ValueType {
     SignMagnitude16,
     /// VISIBLE_STRING
     Text,
+    /// Bytes of any number: DOMAIN, OCTET_STRING.
+    Bytes,
 }

@@ -66,6 +66,8 @@ pub enum Value {
     Duration(Duration),
     /// A text, for string objects.
     Text(String),
+    /// Bytes in the order in which they travel.
+    Bytes(Vec<u8>),
     /// The value saved under this name.
     Saved(String),
 }

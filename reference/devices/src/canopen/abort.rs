@@ -7,8 +7,16 @@ pub(crate) struct Abort(pub(crate) u32);
 impl Abort {
     /// Toggle bit not alternated.
     pub(crate) const TOGGLE: Abort = Abort(0x0503_0000);
+    /// SDO protocol timed out.
+    pub(crate) const TIMED_OUT: Abort = Abort(0x0504_0000);
     /// Command specifier not valid or unknown.
     pub(crate) const UNKNOWN_COMMAND: Abort = Abort(0x0504_0001);
+    /// Invalid block size.
+    pub(crate) const BLOCK_SIZE: Abort = Abort(0x0504_0002);
+    /// Invalid sequence number.
+    pub(crate) const SEQUENCE_NUMBER: Abort = Abort(0x0504_0003);
+    /// CRC error.
+    pub(crate) const CRC: Abort = Abort(0x0504_0004);
     /// Attempt to read a write-only object.
     pub(crate) const WRITE_ONLY: Abort = Abort(0x0601_0001);
     /// Attempt to write a read-only object.
@@ -19,6 +27,8 @@ impl Abort {
     pub(crate) const NOT_MAPPABLE: Abort = Abort(0x0604_0041);
     /// The objects to be mapped would exceed the length of a PDO.
     pub(crate) const MAPPING_TOO_LONG: Abort = Abort(0x0604_0042);
+    /// Parameters that do not go together.
+    pub(crate) const INCOMPATIBLE: Abort = Abort(0x0604_0043);
     /// Access failed due to a hardware error.
     pub(crate) const HARDWARE: Abort = Abort(0x0606_0000);
     /// The length of the service parameter does not match.

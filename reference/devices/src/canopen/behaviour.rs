@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::BlockTransfer;
+
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
 pub struct Behaviour {
@@ -14,8 +16,12 @@ pub struct Behaviour {
     /// A remote frame is answered with the TPDO it names, where bit 30 of the COB-ID allows it; a device may stay
     /// silent.
     pub remote_frames_answered: bool,
+    /// A cyclic TPDO is sent with the first SYNC that counts, and not only with the n-th; CiA 301 leaves that open.
+    pub tpdo_with_first_sync: bool,
     /// A heartbeat is sent at once when 1017h is written; it may also wait for its first period.
     pub heartbeat_on_write: bool,
+    /// SDO block transfer.
+    pub block: BlockTransfer,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -85,6 +91,48 @@ pub struct Behaviour {
     pub lss_refused_index: Option<u8>,
     /// A number of the identity travels with its most significant byte first.
     pub lss_identity_big_endian: bool,
+    /// Activate bit timing switches the bit rate.
+    pub lss_activates: bool,
+    /// The serial number that is named counts when slaves are to identify themselves.
+    pub lss_identify_compares: bool,
+    /// A slave that has a node-ID stays out of a fastscan.
+    pub lss_fastscan_unconfigured_only: bool,
+    /// Transmission types 241 to 251 are taken.
+    pub reserved_types_taken: bool,
+    /// With transmission type 252 a remote frame fetches what the last SYNC found, not what there is.
+    pub remote_sample_kept: bool,
+    /// A TPDO waits for the SYNC with its start value.
+    pub sync_start_value_kept: bool,
+    /// A SYNC that is produced has the counter that 1019h asks for.
+    pub sync_counter_sent: bool,
+    /// A TPDO waits for its inhibit time.
+    pub inhibit_time_kept: bool,
+    /// An EMCY waits for the inhibit time of 1015h.
+    pub emergency_inhibit_kept: bool,
+    /// An error is entered in 1003h.
+    pub errors_remembered: bool,
+    /// Writing 0 to 1003h clears it.
+    pub errors_can_be_cleared: bool,
+    /// The end of an error is reported with the error code 0.
+    pub error_end_reported: bool,
+    /// A consumer notices that a heartbeat is missing.
+    pub lost_heartbeat_noticed: bool,
+    /// A guarded slave notices that its master is missing.
+    pub lost_master_noticed: bool,
+    /// A communication error has the consequence that 1029h says.
+    pub error_behaviour_kept: bool,
+    /// A TIME is taken.
+    pub time_taken: bool,
+    /// `save` written to 1010h saves.
+    pub stores: bool,
+    /// 1010h takes any value for `save`.
+    pub stores_without_signature: bool,
+    /// `load` written to 1011h restores the defaults.
+    pub restores: bool,
+    /// A dummy in a mapping takes its bits of a PDO.
+    pub dummies_take_room: bool,
+    /// A synchronous RPDO waits for SYNC.
+    pub rpdo_waits_for_sync: bool,
     /// The command specifier of the answer to inquire revision number.
     pub lss_revision_specifier: u8,
 }
@@ -145,7 +193,9 @@ impl Default for Behaviour {
             response_us: 150..350,
             tpdo_on_start: true,
             remote_frames_answered: true,
+            tpdo_with_first_sync: false,
             heartbeat_on_write: false,
+            block: BlockTransfer::default(),
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,
@@ -181,6 +231,27 @@ impl Default for Behaviour {
             emergency_shows_register: true,
             node_activation: NodeActivation::AtReset,
             lss_revision_specifier: 0x5C,
+            lss_activates: true,
+            lss_identify_compares: true,
+            lss_fastscan_unconfigured_only: true,
+            reserved_types_taken: false,
+            remote_sample_kept: true,
+            sync_start_value_kept: true,
+            sync_counter_sent: true,
+            inhibit_time_kept: true,
+            emergency_inhibit_kept: true,
+            errors_remembered: true,
+            errors_can_be_cleared: true,
+            error_end_reported: true,
+            lost_heartbeat_noticed: true,
+            lost_master_noticed: true,
+            error_behaviour_kept: true,
+            time_taken: true,
+            stores: true,
+            stores_without_signature: false,
+            restores: true,
+            dummies_take_room: true,
+            rpdo_waits_for_sync: true,
         }
     }
 }

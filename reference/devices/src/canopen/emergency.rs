@@ -1,5 +1,7 @@
 //! EMCY, error register and error history, as far as the devices need them.
 
+use std::time::Duration;
+
 use fieldproof_can::Frame;
 use fieldproof_link::Instant;
 
@@ -10,13 +12,23 @@ use super::{Address, Slave};
 const ERROR_REGISTER: Address = Address::new(0x1001, 0);
 /// The predefined error field.
 pub(super) const ERROR_HISTORY: u16 = 0x1003;
-const COB_ID: Address = Address::new(0x1014, 0);
+pub(super) const COB_ID: Address = Address::new(0x1014, 0);
+const INHIBIT_TIME: Address = Address::new(0x1015, 0);
 
 /// An error that comes and goes: its code and its bit of the error register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct DeviceError {
     pub(crate) code: u16,
     pub(crate) register_bit: u8,
+}
+
+/// What a slave knows of its errors.
+#[derive(Debug, Default)]
+pub(super) struct Errors {
+    /// Those that have begun and not ended.
+    active: Vec<DeviceError>,
+    /// When the last EMCY was due.
+    last: Option<Instant>,
 }
 
 /// Device hardware.
@@ -28,6 +40,21 @@ pub(crate) const HARDWARE: DeviceError = DeviceError {
 pub(super) const LIFE_GUARDING: DeviceError = DeviceError {
     code: 0x8130,
     register_bit: 0x10,
+};
+/// A heartbeat that is consumed is missing.
+pub(super) const HEARTBEAT_LOST: DeviceError = DeviceError {
+    code: 0x8130,
+    register_bit: 0x10,
+};
+/// A SYNC has a counter and should not, or the other way round.
+pub(super) const SYNC_LENGTH: DeviceError = DeviceError {
+    code: 0x8240,
+    register_bit: 0,
+};
+/// An RPDO did not come within its event timer.
+pub(super) const RPDO_TIMEOUT: DeviceError = DeviceError {
+    code: 0x8250,
+    register_bit: 0,
 };
 /// A PDO not processed due to its length.
 pub(super) const PDO_TOO_SHORT: DeviceError = DeviceError {
@@ -44,23 +71,30 @@ impl Slave {
 
     /// An error begins or ends.
     pub(crate) fn set_error(&mut self, now: Instant, error: DeviceError, active: bool) {
-        let register = self.objects.number(ERROR_REGISTER).unwrap_or(0);
-        let bits = u32::from(error.register_bit);
-        let register = if active {
-            register | bits
-        } else {
-            register & !bits
-        };
-        self.objects.set_number(ERROR_REGISTER, i64::from(register));
+        let known = &mut self.errors.active;
+        if active {
+            known.push(error);
+        } else if let Some(place) = known.iter().position(|known| *known == error) {
+            known.remove(place);
+        }
+        let bits = known
+            .iter()
+            .fold(0, |bits, error| bits | error.register_bit);
+        let generic = u8::from(self.profile.complete && !known.is_empty());
+        self.objects
+            .set_number(ERROR_REGISTER, i64::from(bits | generic));
         if active {
             self.report(now, error);
-        } else {
+        } else if self.behaviour.error_end_reported {
             self.send_emergency(now, 0);
         }
     }
 
     /// The newest error is first; as many are kept as the dictionary has places.
     fn remember(&mut self, code: u16) {
+        if !self.behaviour.errors_remembered {
+            return;
+        }
         let place = |sub| Address::new(ERROR_HISTORY, sub);
         let count = self.objects.number(place(0)).unwrap_or(0);
         let Ok(count) = u8::try_from(count) else {
@@ -79,9 +113,23 @@ impl Slave {
 
     /// Clears 1003h.
     pub(super) fn forget_errors(&mut self) {
+        if !self.behaviour.errors_can_be_cleared {
+            return;
+        }
         for sub in 0..=254 {
             self.objects.set_number(Address::new(ERROR_HISTORY, sub), 0);
         }
+    }
+
+    /// When the next EMCY may leave: 1015h counts 100 us.
+    fn uninhibited(&mut self, now: Instant) -> Instant {
+        let count = self.objects.number(INHIBIT_TIME).unwrap_or(0);
+        let inhibit = Duration::from_micros(u64::from(count) * 100);
+        let kept = self.profile.complete && self.behaviour.emergency_inhibit_kept;
+        let earliest = self.errors.last.map(|last| last + inhibit);
+        let at = earliest.filter(|_| kept).map_or(now, |at| at.max(now));
+        self.errors.last = Some(at);
+        at
     }
 
     /// | byte | holds |
@@ -113,6 +161,7 @@ impl Slave {
         };
         let raw = u16::try_from(cob_id & 0x7FF).unwrap_or(0);
         let frame = Frame::of_eight(identifier(raw), [low, high, register, 0, 0, 0, 0, 0]);
-        self.queue.push(now, Service::Emergency, frame);
+        let at = self.uninhibited(now);
+        self.queue.push(at, Service::Emergency, frame);
     }
 }

@@ -7,10 +7,12 @@ use fieldproof_link::Instant;
 
 use super::emergency::LIFE_GUARDING;
 use super::queue::{Service, identifier};
-use super::{Address, Slave};
+use super::{Address, Slave, State};
 
 pub(super) const GUARD_TIME: Address = Address::new(0x100C, 0);
 pub(super) const LIFE_TIME_FACTOR: Address = Address::new(0x100D, 0);
+/// What follows a communication error: 0 Pre-operational out of Operational, 1 nothing, 2 Stopped.
+const ERROR_BEHAVIOUR: Address = Address::new(0x1029, 1);
 pub(super) const PRODUCER_TIME: Address = Address::new(0x1017, 0);
 
 /// Heartbeat producer and guarded slave.
@@ -66,9 +68,25 @@ impl Slave {
         let control = &mut self.error_control;
         if control.guarded_until.is_some_and(|until| until <= now) {
             control.guarded_until = None;
+            if !self.behaviour.lost_master_noticed {
+                return;
+            }
             control.lost = true;
             self.set_error(now, LIFE_GUARDING, true);
+            self.communication_failed();
         }
+    }
+
+    /// A communication error: what 1029h says of it follows once the EMCY is on its way.
+    pub(super) fn communication_failed(&mut self) {
+        if !self.profile.complete || !self.behaviour.error_behaviour_kept {
+            return;
+        }
+        self.consequence = match self.objects.number(ERROR_BEHAVIOUR) {
+            Some(0) if self.state == State::Operational => Some(State::PreOperational),
+            Some(2) => Some(State::Stopped),
+            _ => None,
+        };
     }
 
     /// A remote frame on the identifier of error control. A node with a heartbeat is not guarded.

@@ -3,13 +3,14 @@
 use fieldproof_can::Frame;
 use fieldproof_link::Instant;
 
+pub(super) use super::lss_services::BitTimingSwitch;
 use super::queue::{Service, identifier};
 use super::{Address, LssAbilities, NodeActivation, Slave};
 
 /// Requests; answers are one below.
 pub(super) const REQUEST: u16 = 0x7E5;
 const ANSWER: u16 = 0x7E4;
-const IDENTITY: u16 = 0x1018;
+pub(super) const IDENTITY: u16 = 0x1018;
 
 /// Between power-on and the last match of its identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,6 +48,7 @@ impl Slave {
         match specifier {
             0x04 => self.switch_global(now, first),
             0x40..=0x43 => self.switch_selective(now, specifier, &request),
+            0x46..=0x4C | 0x51 if self.profile.complete => self.find(now, &request),
             _ if self.lss != LssState::Configuration => {}
             0x11 => self.configure_node(now, first),
             0x13 => self.configure_bit_rate(now, abilities, first, second),
@@ -55,6 +57,9 @@ impl Slave {
                 self.answer_lss(now, [0x17, 0, 0, 0, 0, 0, 0, 0]);
             }
             0x5A..=0x5D => self.inquire_identity(now, specifier),
+            0x15 if self.profile.complete => {
+                self.activate_bit_timing(now, u16::from_le_bytes([first, second]));
+            }
             0x5E => self.answer_lss(now, [0x5E, self.node, 0, 0, 0, 0, 0, 0]),
             _ => {}
         }
@@ -162,7 +167,7 @@ impl Slave {
         self.answer_lss(now, [answered, b0, b1, b2, b3, 0, 0, 0]);
     }
 
-    fn answer_lss(&mut self, now: Instant, answer: [u8; 8]) {
+    pub(super) fn answer_lss(&mut self, now: Instant, answer: [u8; 8]) {
         let at = now + self.turnaround();
         let frame = Frame::of_eight(identifier(ANSWER), answer);
         self.queue.push(at, Service::Lss, frame);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use fieldproof_dictionary::{Dictionary, Entry};
 
+use super::emergency::ERROR_HISTORY;
 use super::{Abort, Address};
 
 /// One value with its attributes.
@@ -14,6 +15,8 @@ pub(crate) struct Object {
     pub(crate) mappable: bool,
     /// The number of bytes, where the type fixes it.
     size: Option<usize>,
+    /// The number of bits, where the type fixes it.
+    bits: Option<u32>,
     signed: bool,
     low: Option<i128>,
     high: Option<i128>,
@@ -27,6 +30,7 @@ impl Object {
             writable: entry.access.writable(),
             mappable: entry.pdo_mapping,
             size: entry.data_type.bytes(),
+            bits: entry.data_type.bits(),
             signed: entry.data_type.is_signed(),
             low: None,
             high: None,
@@ -48,6 +52,11 @@ impl Object {
     /// The number of bytes, where the type fixes it.
     pub(crate) fn size(&self) -> Option<usize> {
         self.size
+    }
+
+    /// The number of bits that a PDO carries, where the type fixes it.
+    pub(crate) fn bits(&self) -> Option<u32> {
+        self.bits
     }
 
     /// The value as an unsigned number; what does not fit 32 bits is left out.
@@ -201,14 +210,17 @@ impl Objects {
     }
 
     /// The parameters of `indexes` that are not what a reset without saved values gives. What a PDO can carry is no
-    /// parameter.
+    /// parameter, nor is the error history.
     pub(crate) fn differing(
         &self,
         indexes: &std::ops::RangeInclusive<u16>,
         node: u8,
     ) -> BTreeMap<Address, Vec<u8>> {
         let candidates = self.iter().filter(|(address, object)| {
-            object.writable && !object.mappable && indexes.contains(&address.index())
+            object.writable
+                && !object.mappable
+                && address.index() != ERROR_HISTORY
+                && indexes.contains(&address.index())
         });
         candidates
             .filter_map(|(address, _)| {

@@ -22,6 +22,10 @@ pub(super) const INVALID: u32 = 1 << 31;
 /// Bit 30: a remote frame does not fetch it.
 pub(super) const NO_REMOTE: u32 = 1 << 30;
 
+/// A remote frame fetches what the last SYNC found.
+pub(super) const SAMPLED_BY_SYNC: u8 = 252;
+/// A remote frame fetches what there is.
+pub(super) const ON_REMOTE_FRAME: u8 = 253;
 /// From this transmission type on a PDO is event-driven.
 pub(super) const EVENT_DRIVEN: u8 = 254;
 
@@ -34,6 +38,8 @@ pub(super) struct Communication {
     pub(super) kind: u8,
     pub(super) inhibit: Duration,
     pub(super) event_timer: Duration,
+    /// The counter of the SYNC that is taken for the first; 0 for any.
+    pub(super) start: u8,
 }
 
 impl Communication {
@@ -43,6 +49,7 @@ impl Communication {
     /// | 2 | transmission type |
     /// | 3 | inhibit time, 100 us |
     /// | 5 | event timer, ms |
+    /// | 6 | SYNC start value |
     pub(super) fn read(
         objects: &Objects,
         index: u16,
@@ -56,9 +63,14 @@ impl Communication {
             remote: cob_id & NO_REMOTE == 0 || behaviour.remote_bit_ignored,
             identifier: u16::from_le_bytes([identifier_low, identifier_high]) & 0x7FF,
             kind: number(2)?.to_le_bytes()[0],
-            inhibit: Duration::from_micros(u64::from(number(3).unwrap_or(0)) * 100),
+            inhibit: if behaviour.inhibit_time_kept {
+                Duration::from_micros(u64::from(number(3).unwrap_or(0)) * 100)
+            } else {
+                Duration::ZERO
+            },
             event_timer: Duration::from_millis(u64::from(number(5).unwrap_or(0)))
                 * behaviour.event_timer_unit_ms,
+            start: number(6).unwrap_or(0).to_le_bytes()[0],
         })
     }
 
@@ -97,21 +109,40 @@ pub(super) fn entries(objects: &Objects, index: u16) -> impl Iterator<Item = Map
         .map(MappingEntry::from)
 }
 
-/// One mapped object: its slot and its length in bytes.
+/// One mapped object: its slot, or none for a dummy, and its length in bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Field {
-    pub(super) slot: usize,
+    pub(super) slot: Option<usize>,
     pub(super) address: Address,
-    pub(super) size: usize,
+    pub(super) bits: u32,
 }
 
-/// The objects mapped at `index`. Only whole bytes are mapped.
+/// The length in bits of the data type that `address` stands for in a mapping, as a dummy; none if it is no dummy.
+pub(super) fn dummy(address: Address) -> Option<u32> {
+    match (address.index(), address.sub()) {
+        (1, 0) => Some(1),
+        (2 | 5, 0) => Some(8),
+        (3 | 6, 0) => Some(16),
+        (4 | 7, 0) => Some(32),
+        _ => None,
+    }
+}
+
+/// `bits` bits of `data` from bit `from` on; `None` if there are not so many.
+fn part(data: u64, from: u32, bits: u32) -> Option<u64> {
+    let unused = 64_u32.checked_sub(from)?.checked_sub(bits)?;
+    let above = data.checked_shl(unused).unwrap_or(0);
+    Some(above.checked_shr(unused + from).unwrap_or(0))
+}
+
+/// The objects mapped at `index`.
 pub(super) fn fields(objects: &Objects, index: u16) -> Vec<Field> {
     let field = |entry: MappingEntry| {
-        Some(Field {
-            slot: objects.find(entry.address).ok()?,
+        let slot = objects.find(entry.address).ok();
+        (slot.is_some() || dummy(entry.address).is_some()).then(|| Field {
+            slot,
             address: entry.address,
-            size: usize::from(entry.bits / 8),
+            bits: u32::from(entry.bits),
         })
     };
     entries(objects, index).filter_map(field).collect()
@@ -124,6 +155,8 @@ pub(super) struct Rpdo {
     fields: Vec<Field>,
     /// What arrived and waits for SYNC.
     latched: Option<[u8; 8]>,
+    /// When the next one is late.
+    deadline: Option<Instant>,
 }
 
 /// The RPDOs that the dictionary describes.
@@ -133,6 +166,7 @@ pub(super) fn rpdos(objects: &Objects, behaviour: &Behaviour) -> Vec<Rpdo> {
             communication: Communication::read(objects, RPDO_COMMUNICATION + number, behaviour)?,
             fields: fields(objects, RPDO_MAPPING + number),
             latched: None,
+            deadline: None,
         })
     };
     (0..MOST_PDOS).filter_map(rpdo).collect()
@@ -156,8 +190,8 @@ impl Slave {
         let Some(rpdo) = found.and_then(|number| self.rpdos.get_mut(number)) else {
             return;
         };
-        let mapped: usize = rpdo.fields.iter().map(|field| field.size).sum();
-        if frame.len() < mapped {
+        let mapped: u32 = rpdo.fields.iter().map(|field| field.bits).sum();
+        if frame.len() < mapped.div_ceil(8) as usize {
             self.report(now, super::emergency::PDO_TOO_SHORT);
             return;
         }
@@ -165,7 +199,11 @@ impl Slave {
         data.iter_mut()
             .zip(frame.bytes())
             .for_each(|(to, from)| *to = *from);
-        if rpdo.communication.event_driven() {
+        let timer = rpdo.communication.event_timer;
+        if self.profile.complete {
+            rpdo.deadline = (!timer.is_zero()).then(|| now + timer);
+        }
+        if rpdo.communication.event_driven() || !self.behaviour.rpdo_waits_for_sync {
             let fields = rpdo.fields.clone();
             self.take_pdo(now, &fields, data, application);
         } else {
@@ -193,14 +231,48 @@ impl Slave {
         data: [u8; 8],
         application: &mut dyn Application,
     ) {
-        let mut rest = data.as_slice();
+        let data = u64::from_le_bytes(data);
+        let mut from = 0;
         for field in fields {
-            let Some((value, behind)) = rest.split_at_checked(field.size) else {
+            let Some(value) = part(data, from, field.bits) else {
                 return;
             };
-            rest = behind;
+            from += field.bits;
+            let Some(slot) = field.slot else {
+                if !self.behaviour.dummies_take_room {
+                    from -= field.bits;
+                }
+                continue;
+            };
+            let value = value.to_le_bytes();
+            let value = value.get(..field.bits.div_ceil(8) as usize);
             // A PDO has no answer: a value that the object does not take leaves it as it was.
-            let _ = self.write(now, field.address, field.slot, value, application);
+            let _ = value.map(|value| self.write(now, field.address, slot, value, application));
+        }
+    }
+
+    /// When an RPDO is late.
+    pub(super) fn rpdos_due(&self) -> Option<Instant> {
+        self.rpdos.iter().filter_map(|rpdo| rpdo.deadline).min()
+    }
+
+    /// Reports each RPDO that is late, once.
+    pub(super) fn wake_rpdos(&mut self, now: Instant) {
+        let late = |rpdo: &&mut Rpdo| rpdo.deadline.is_some_and(|deadline| deadline <= now);
+        let mut count = 0;
+        for rpdo in self.rpdos.iter_mut().filter(late) {
+            rpdo.deadline = None;
+            count += 1;
+        }
+        for _ in 0..count {
+            self.report(now, super::emergency::RPDO_TIMEOUT);
+        }
+    }
+
+    /// PDOs are not permitted any more: none is late.
+    pub(super) fn stop_rpdos(&mut self) {
+        for rpdo in &mut self.rpdos {
+            rpdo.deadline = None;
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use super::objects::Objects;
 use super::pdo::{
-    EVENT_DRIVEN, INVALID, MappingEntry, NO_REMOTE, RPDO_COMMUNICATION, RPDO_MAPPING,
-    TPDO_COMMUNICATION, TPDO_MAPPING,
+    EVENT_DRIVEN, INVALID, MappingEntry, NO_REMOTE, ON_REMOTE_FRAME, RPDO_COMMUNICATION,
+    RPDO_MAPPING, SAMPLED_BY_SYNC, TPDO_COMMUNICATION, TPDO_MAPPING, dummy,
 };
-use super::{Abort, Address, Profile};
+use super::{Abort, Address, Behaviour, Profile};
 
 /// Which parameter an index is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +55,7 @@ fn enabled(objects: &Objects, communication: u16) -> bool {
 pub(super) fn check(
     objects: &Objects,
     profile: &Profile,
+    behaviour: &Behaviour,
     parameter: Parameter,
     address: Address,
     value: &[u8],
@@ -62,15 +63,8 @@ pub(super) fn check(
     match (parameter, address.sub()) {
         (Parameter::Communication, 1) => cob_id(objects, address, number(value)),
         (Parameter::Communication, 2) => {
-            let lowest = if is_transmit(address.index()) {
-                profile.lowest_transmit_type
-            } else {
-                0
-            };
-            match value.first() {
-                Some(kind) if *kind >= EVENT_DRIVEN || (lowest..=240).contains(kind) => Ok(()),
-                _ => Err(Abort::INVALID_VALUE),
-            }
+            let kind = value.first().copied().unwrap_or(0);
+            transmission_type(profile, behaviour, is_transmit(address.index()), kind)
         }
         (Parameter::Communication, 3) if is_transmit(address.index()) => {
             let same = objects.number(address) == Some(number(value));
@@ -78,6 +72,16 @@ pub(super) fn check(
                 return Err(Abort::DEVICE_STATE);
             }
             Ok(())
+        }
+        (Parameter::Communication, 6) if profile.complete => {
+            let same = objects.number(address) == Some(number(value));
+            if enabled(objects, address.index()) && !same {
+                return Err(Abort::DEVICE_STATE);
+            }
+            match number(value) {
+                0..=240 => Ok(()),
+                _ => Err(Abort::INVALID_VALUE),
+            }
         }
         (Parameter::Communication, _) => Ok(()),
         (Parameter::Mapping, sub) => {
@@ -87,6 +91,7 @@ pub(super) fn check(
             if sub == 0 {
                 return count(
                     objects,
+                    profile,
                     address.index(),
                     value.first().copied().unwrap_or(0),
                 );
@@ -96,9 +101,31 @@ pub(super) fn check(
             }
             match number(value) {
                 0 => Ok(()),
-                entry => mappable(objects, address.index(), entry.into()).map(drop),
+                entry => mappable(objects, profile, address.index(), entry.into()).map(drop),
             }
         }
+    }
+}
+
+/// Types 241 to 251 are reserved; 252 and 253 are for what is sent, and need remote frames.
+fn transmission_type(
+    profile: &Profile,
+    behaviour: &Behaviour,
+    transmit: bool,
+    kind: u8,
+) -> Result<(), Abort> {
+    let lowest = if transmit {
+        profile.lowest_transmit_type
+    } else {
+        0
+    };
+    let remote = profile.complete && transmit && behaviour.remote_frames_answered;
+    match kind {
+        EVENT_DRIVEN.. => Ok(()),
+        SAMPLED_BY_SYNC..=ON_REMOTE_FRAME if remote => Ok(()),
+        241..EVENT_DRIVEN if !behaviour.reserved_types_taken => Err(Abort::INVALID_VALUE),
+        _ if kind < lowest => Err(Abort::INVALID_VALUE),
+        _ => Ok(()),
     }
 }
 
@@ -121,13 +148,13 @@ fn cob_id(objects: &Objects, address: Address, value: u32) -> Result<(), Abort> 
 }
 
 /// Entries 1 to `count` must be there and fit one PDO.
-fn count(objects: &Objects, index: u16, count: u8) -> Result<(), Abort> {
+fn count(objects: &Objects, profile: &Profile, index: u16, count: u8) -> Result<(), Abort> {
     let mut bits = 0;
     for sub in 1..=count {
         let entry = objects
             .number(Address::new(index, sub))
             .ok_or(Abort::MAPPING_TOO_LONG)?;
-        bits += mappable(objects, index, entry.into())?;
+        bits += mappable(objects, profile, index, entry.into())?;
     }
     if bits > 64 {
         return Err(Abort::MAPPING_TOO_LONG);
@@ -136,7 +163,18 @@ fn count(objects: &Objects, index: u16, count: u8) -> Result<(), Abort> {
 }
 
 /// The length in bits of what `entry` maps at `index`.
-fn mappable(objects: &Objects, index: u16, entry: MappingEntry) -> Result<u32, Abort> {
+fn mappable(
+    objects: &Objects,
+    profile: &Profile,
+    index: u16,
+    entry: MappingEntry,
+) -> Result<u32, Abort> {
+    if profile.complete
+        && let Some(bits) = dummy(entry.address)
+    {
+        let taken = !is_transmit(index) && bits == u32::from(entry.bits);
+        return taken.then_some(bits).ok_or(Abort::NOT_MAPPABLE);
+    }
     let slot = objects.find(entry.address)?;
     let object = objects.at(slot).ok_or(Abort::NO_OBJECT)?;
     let access = if is_transmit(index) {
@@ -144,7 +182,7 @@ fn mappable(objects: &Objects, index: u16, entry: MappingEntry) -> Result<u32, A
     } else {
         object.writable
     };
-    let whole = object.size().map(|size| size * 8) == Some(usize::from(entry.bits));
+    let whole = object.bits() == Some(u32::from(entry.bits));
     if !object.mappable || !access || !whole {
         return Err(Abort::NOT_MAPPABLE);
     }

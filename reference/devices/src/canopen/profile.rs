@@ -26,6 +26,12 @@ pub(crate) struct Profile {
     /// The objects of 8 bits that hold the node-ID and the bit-rate code and change them from the next reset on.
     pub(crate) node_object: Option<Address>,
     pub(crate) bit_rate_object: Option<Address>,
+    /// It has what CiA 301 and CiA 305 leave to a device: transmission types 252 and 253, dummies in a mapping, late
+    /// RPDOs, a counter in SYNC, TIME, heartbeat consumers, error behaviour, a second SDO server, rules for every
+    /// COB-ID; and LSS that activates a bit timing and finds slaves.
+    pub(crate) complete: bool,
+    /// The TIME_OF_DAY that a TIME sets.
+    pub(crate) clock_object: Option<Address>,
     /// Objects that are one value; after a reset the second has what the first has.
     pub(crate) twins: &'static [(Address, Address)],
 }

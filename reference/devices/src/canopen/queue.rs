@@ -13,6 +13,7 @@ pub(crate) enum Service {
     Sdo,
     Pdo,
     Sync,
+    Time,
     Emergency,
     Lss,
 }
@@ -62,8 +63,19 @@ impl Queue {
         }
     }
 
+    /// Forgets what is due.
+    pub(crate) fn drop_due(&mut self, now: Instant) {
+        self.pending.retain(|pending| pending.due > now);
+    }
+
     pub(crate) fn retain(&mut self, permitted: impl Fn(Service) -> bool) {
         self.pending.retain(|pending| permitted(pending.service));
+    }
+
+    /// Forgets the frames with this identifier.
+    pub(crate) fn forget(&mut self, id: StandardId) {
+        self.pending
+            .retain(|pending| pending.frame.standard_id() != Some(id));
     }
 
     pub(crate) fn clear(&mut self) {

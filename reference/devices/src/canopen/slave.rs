@@ -1,15 +1,15 @@
 //! The slave as a whole: what it holds, what arrives, when it wants to be woken, what a reset does.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::time::Duration;
 
 use fieldproof_can::{Frame, Id};
 use fieldproof_link::{Instant, Line, NotOffered, Outbox};
 
-use super::emergency::ERROR_HISTORY;
+use super::consumers::Consumers;
+use super::emergency::Errors;
 use super::error_control::ErrorControl;
-use super::lss::{self, LssState};
+use super::lss::{self, BitTimingSwitch, LssState};
 use super::memory::Memory;
 use super::nmt::Command;
 use super::objects::Objects;
@@ -17,6 +17,7 @@ use super::pdo::{self, Rpdo};
 use super::queue::{Queue, Service, identifier};
 use super::sdo::Server;
 use super::sync::Sync;
+use super::time::Clock;
 use super::tpdo::{self, Tpdo};
 use super::{Address, Application, Behaviour, Profile, State};
 
@@ -42,10 +43,23 @@ pub(crate) struct Slave {
     pub(super) sdo: Server,
     pub(super) sync: Sync,
     pub(super) error_control: ErrorControl,
+    pub(super) errors: Errors,
+    pub(super) consumers: Consumers,
+    pub(super) clock: Clock,
+    /// The state that follows a communication error.
+    pub(super) consequence: Option<State>,
+    /// A bit timing is being activated.
+    pub(super) switch: Option<BitTimingSwitch>,
+    /// So many numbers by which slaves are to identify themselves have fitted in a row.
+    pub(super) identified: u8,
+    /// The part of the identity that a fastscan asks for.
+    pub(super) scanned: u8,
+    /// The second SDO server, and the identifier of its requests.
+    pub(super) second_sdo: (Option<u16>, Server),
     pub(super) rpdos: Vec<Rpdo>,
     pub(super) tpdos: Vec<Tpdo>,
-    bit_rate: u32,
-    powered: bool,
+    pub(super) bit_rate: u32,
+    pub(super) powered: bool,
     boot_at: Option<Instant>,
     chance: fastrand::Rng,
 }
@@ -85,6 +99,14 @@ impl Slave {
             sdo: Server::default(),
             sync: Sync::default(),
             error_control: ErrorControl::default(),
+            errors: Errors::default(),
+            consumers: Consumers::default(),
+            clock: Clock::default(),
+            consequence: None,
+            switch: None,
+            identified: 0,
+            scanned: 0,
+            second_sdo: (None, Server::default()),
             rpdos: Vec::new(),
             tpdos: Vec::new(),
             bit_rate: factory.bit_rate,
@@ -134,7 +156,13 @@ impl Slave {
         } else if frame.is_remote() {
             self.fetch_tpdo(now, raw);
         } else if self.sync.identifier == Some(raw) {
-            self.synchronise(now, application);
+            self.receive_sync(now, frame, application);
+        } else if self.second_sdo.0 == Some(raw) {
+            self.with_second_sdo(|slave| slave.serve(now, frame, application));
+        } else if self.takes_time(raw) {
+            self.receive_time(now, frame, application);
+        } else if (0x701..=0x77F).contains(&raw) {
+            self.hear(now, raw - 0x700, frame);
         } else {
             self.receive_pdo(now, raw, frame, application);
         }
@@ -152,6 +180,12 @@ impl Slave {
             self.error_control.due(),
             self.sync.next,
             self.tpdos_due(),
+            self.sdo.deadline(),
+            self.second_sdo.1.deadline(),
+            self.rpdos_due(),
+            self.consumers.due(),
+            self.clock.next,
+            self.switch.as_ref().map(BitTimingSwitch::due),
         ];
         timers.into_iter().flatten().min()
     }
@@ -171,9 +205,18 @@ impl Slave {
             self.boot(now);
         }
         self.wake_error_control(now);
+        self.wake_sdo(now);
+        self.with_second_sdo(|slave| slave.wake_sdo(now));
+        self.wake_consumers(now);
+        self.wake_rpdos(now);
         self.produce_sync(now, application);
+        self.produce_time(now);
         self.wake_tpdos(now);
+        self.wake_switch(now);
         self.queue.flush(now, port, out);
+        if let Some(state) = self.consequence.take() {
+            self.enter(now, state);
+        }
     }
 
     pub(crate) fn is_operational(&self) -> bool {
@@ -226,11 +269,16 @@ impl Slave {
         if state == self.state {
             return;
         }
+        if self.state == State::Stopped {
+            self.sync.counter = 0;
+        }
         self.state = state;
         self.queue
             .retain(|service| state.permits(service, &self.behaviour));
         if state.permits(Service::Pdo, &self.behaviour) {
             self.start_tpdos(now);
+        } else {
+            self.stop_rpdos();
         }
     }
 
@@ -270,6 +318,7 @@ impl Slave {
         self.sdo = Server::default();
         self.sync = Sync::default();
         self.error_control = ErrorControl::default();
+        self.initialise_services(now);
         self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
         self.tpdos = tpdo::tpdos(&self.objects, &self.behaviour);
         self.boot_at = self.has_node().then(|| now + self.profile.boot_time);
@@ -285,6 +334,9 @@ impl Slave {
         self.enter(now, State::PreOperational);
         self.start_error_control(now);
         self.reconfigure_sync(now);
+        if self.profile.complete {
+            self.reconfigure_time(now);
+        }
     }
 
     pub(super) fn has_node(&self) -> bool {
@@ -349,41 +401,4 @@ impl Slave {
         self.show_configuration();
         Ok(())
     }
-
-    /// Everything that a case could have left changed.
-    pub(crate) fn state(&self) -> BTreeMap<String, String> {
-        let mut state = BTreeMap::new();
-        for (address, object) in self.objects.iter() {
-            if object.writable && address.index() != ERROR_HISTORY {
-                state.insert(address.to_string(), hexadecimal(object.value()));
-            }
-        }
-        for (address, value) in &self.memory.values {
-            state.insert(format!("saved {address}"), hexadecimal(value));
-        }
-        let facts = [
-            ("power", if self.powered { "on" } else { "off" }.to_owned()),
-            ("nmt", self.state.name().to_owned()),
-            ("lss", self.lss.name().to_owned()),
-            ("sdo", self.sdo.name().to_owned()),
-            ("node", self.node.to_string()),
-            ("node pending", self.pending_node.to_string()),
-            ("node saved", self.memory.node.to_string()),
-            ("bit-rate", self.bit_rate.to_string()),
-            ("bit-rate pending", self.pending_bit_rate.to_string()),
-            ("bit-rate saved", self.memory.bit_rate.to_string()),
-        ];
-        state.extend(facts.map(|(name, value)| (name.to_owned(), value)));
-        state
-    }
-}
-
-/// As a number is written: the most significant byte first.
-fn hexadecimal(value: &[u8]) -> String {
-    let mut text = String::with_capacity(2 * value.len());
-    for byte in value.iter().rev() {
-        // Writing to a string does not fail.
-        let _ = write!(text, "{byte:02X}");
-    }
-    text
 }

@@ -10,6 +10,7 @@ use super::{Abort, Address, Application, Profile, Slave};
 
 pub(super) const COB_ID: Address = Address::new(0x1005, 0);
 pub(super) const CYCLE: Address = Address::new(0x1006, 0);
+pub(super) const OVERFLOW: Address = Address::new(0x1019, 0);
 /// Bit 30 of 1005h: the device produces SYNC.
 const PRODUCES: u32 = 1 << 30;
 
@@ -33,6 +34,20 @@ pub(super) fn check(profile: &Profile, present: u32, value: u32) -> Result<(), A
     Ok(())
 }
 
+/// Whether `value` may be written to 1019h while 1006h holds `period`.
+///
+/// # Errors
+/// 1 and what is above 240 are reserved; while there is a period the counter stays as it is.
+pub(super) fn check_overflow(period: u32, value: u32) -> Result<(), Abort> {
+    if !matches!(value, 0 | 2..=240) {
+        Err(Abort::INVALID_VALUE)
+    } else if period != 0 {
+        Err(Abort::DEVICE_STATE)
+    } else {
+        Ok(())
+    }
+}
+
 /// A shorter cycle period is kept as this one: no bus carries more.
 const SHORTEST_PERIOD: Duration = Duration::from_micros(200);
 
@@ -43,10 +58,14 @@ pub(super) struct Sync {
     period: Duration,
     /// When it produces the next one.
     pub(super) next: Option<Instant>,
+    /// The highest counter of a SYNC; 0: it has none.
+    pub(super) overflow: u8,
+    /// That of the last SYNC produced.
+    pub(super) counter: u8,
 }
 
 impl Slave {
-    /// Reads 1005h and 1006h again.
+    /// Reads 1005h, 1006h and 1019h again.
     pub(super) fn reconfigure_sync(&mut self, now: Instant) {
         let cob_id = self.objects.number(COB_ID);
         let period = self.objects.number(CYCLE).unwrap_or(0);
@@ -56,16 +75,51 @@ impl Slave {
         let asked = cob_id.is_some_and(|cob_id| cob_id & PRODUCES != 0);
         let goes_on = self.sync.next.is_some() && !self.behaviour.sync_can_be_stopped;
         let produces = (asked || goes_on) && period != 0;
+        if self.sync.next.is_none() {
+            self.sync.counter = 0;
+        }
         self.sync.next = produces.then(|| now + self.sync.period);
+        if self.profile.complete {
+            let overflow = self.objects.number(OVERFLOW).unwrap_or(0);
+            self.sync.overflow = overflow.to_le_bytes()[0];
+        }
+    }
+
+    /// A SYNC has come: with a counter, or without one, as 1019h says.
+    pub(super) fn receive_sync(
+        &mut self,
+        now: Instant,
+        frame: &Frame,
+        application: &mut dyn Application,
+    ) {
+        let counter = match (frame.bytes(), self.sync.overflow) {
+            (_, 0) if !self.profile.complete => None,
+            ([], 0) => None,
+            ([counter], 1..) => Some(*counter),
+            _ => return self.report(now, super::emergency::SYNC_LENGTH),
+        };
+        self.synchronise(now, counter, application);
     }
 
     /// A SYNC was received or sent.
-    pub(super) fn synchronise(&mut self, now: Instant, application: &mut dyn Application) {
+    fn synchronise(
+        &mut self,
+        now: Instant,
+        counter: Option<u8>,
+        application: &mut dyn Application,
+    ) {
         if self.state.permits(Service::Pdo, &self.behaviour) {
             self.actuate_pdos(now, application);
             self.notice_changes();
-            self.synchronise_tpdos(now);
+            self.synchronise_tpdos(now, counter);
         }
+    }
+
+    /// The counter of the next SYNC, from 1 to 1019h.
+    fn count_sync(&mut self) -> Option<u8> {
+        let before = self.sync.counter.checked_rem(self.sync.overflow)?;
+        self.sync.counter = before + 1;
+        Some(self.sync.counter)
     }
 
     pub(super) fn produce_sync(&mut self, now: Instant, application: &mut dyn Application) {
@@ -76,13 +130,13 @@ impl Slave {
         if !self.state.permits(Service::Sync, &self.behaviour) {
             return;
         }
-        let frame = self
-            .sync
-            .identifier
-            .and_then(|raw| Frame::data(identifier(raw), &[]));
-        if let Some(frame) = frame {
+        let counter = self.count_sync();
+        let shown = counter.filter(|_| self.behaviour.sync_counter_sent);
+        let data = shown.as_slice();
+        let raw = self.sync.identifier;
+        if let Some(frame) = raw.and_then(|raw| Frame::data(identifier(raw), data)) {
             self.queue.push(now, Service::Sync, frame);
-            self.synchronise(now, application);
+            self.synchronise(now, counter, application);
         }
     }
 }

@@ -4,7 +4,9 @@ use fieldproof_can::Frame;
 use fieldproof_link::Instant;
 
 use super::objects::Objects;
-use super::pdo::{Communication, Field, MOST_PDOS, TPDO_COMMUNICATION, TPDO_MAPPING, fields};
+use super::pdo::{
+    Communication, Field, MOST_PDOS, SAMPLED_BY_SYNC, TPDO_COMMUNICATION, TPDO_MAPPING, fields,
+};
 use super::queue::{Service, identifier};
 use super::{Behaviour, Slave, TransmitEvent};
 
@@ -27,6 +29,8 @@ pub(super) struct Tpdo {
     event: bool,
     /// SYNCs since it was last sent.
     syncs: u8,
+    /// It waits for the SYNC with its start value.
+    waits: bool,
     /// Its numbers leave with the most significant byte first.
     big_endian: bool,
     /// It was due with the SYNC before.
@@ -45,6 +49,7 @@ impl Tpdo {
             sampled: Payload::default(),
             event: false,
             syncs: 0,
+            waits: false,
             big_endian: behaviour.tpdo_big_endian,
             owed: false,
             last: None,
@@ -53,25 +58,37 @@ impl Tpdo {
     }
 
     fn payload(&self, objects: &Objects) -> Payload {
-        let mut payload = Payload::default();
+        let mut data = 0;
+        let mut used = 0;
         for field in &self.fields {
-            let value = objects
-                .at(field.slot)
-                .map_or(&[][..], |object| object.value());
-            let end = payload.len + field.size;
-            let Some(place) = payload.bytes.get_mut(payload.len..end) else {
+            if used + field.bits > 64 {
                 break;
-            };
-            place
-                .iter_mut()
-                .zip(value)
-                .for_each(|(to, from)| *to = *from);
-            if self.big_endian {
-                place.reverse();
             }
-            payload.len = end;
+            data |= self.part(objects, field).checked_shl(used).unwrap_or(0);
+            used += field.bits;
         }
-        payload
+        Payload {
+            len: used.div_ceil(8) as usize,
+            bytes: data.to_le_bytes(),
+        }
+    }
+
+    /// What a field carries, in the low bits.
+    fn part(&self, objects: &Objects, field: &Field) -> u64 {
+        let object = field.slot.and_then(|slot| objects.at(slot));
+        let mut bytes = [0; 8];
+        let size = field.bits.div_ceil(8) as usize;
+        let places = bytes.get_mut(..size).unwrap_or_default();
+        let value = object.map_or(&[][..], |object| object.value());
+        places
+            .iter_mut()
+            .zip(value)
+            .for_each(|(to, from)| *to = *from);
+        if self.big_endian {
+            places.reverse();
+        }
+        let mask = u64::MAX.checked_shr(64 - field.bits.min(64)).unwrap_or(0);
+        u64::from_le_bytes(bytes) & mask
     }
 
     /// When it leaves next, if nothing happens before.
@@ -125,12 +142,20 @@ impl Slave {
 
     fn start_tpdo(&mut self, now: Instant, index: u16) {
         let on_start = self.behaviour.tpdo_on_start;
+        let with_first = self.behaviour.tpdo_with_first_sync;
+        let counted = self.sync.overflow != 0 && self.behaviour.sync_start_value_kept;
         let Some(tpdo) = self.tpdos.iter_mut().find(|tpdo| tpdo.index == index) else {
             return;
         };
         tpdo.sampled = tpdo.payload(&self.objects);
         tpdo.event = on_start && tpdo.communication.event_driven();
-        tpdo.syncs = 0;
+        let cyclic = (1..=240).contains(&tpdo.communication.kind);
+        tpdo.syncs = if cyclic && with_first {
+            tpdo.communication.kind - 1
+        } else {
+            0
+        };
+        tpdo.waits = cyclic && counted && tpdo.communication.start != 0;
         tpdo.owed = false;
         let period = tpdo.communication.event_timer;
         tpdo.timer = (!period.is_zero()).then(|| now + period);
@@ -151,8 +176,8 @@ impl Slave {
         }
     }
 
-    /// SYNC: sends the synchronous TPDOs that are due.
-    pub(super) fn synchronise_tpdos(&mut self, now: Instant) {
+    /// SYNC, with its counter if it has one: sends the synchronous TPDOs that are due.
+    pub(super) fn synchronise_tpdos(&mut self, now: Instant, counter: Option<u8>) {
         for number in 0..self.tpdos.len() {
             let late = self.behaviour.tpdo_one_sync_late;
             let surplus = self.behaviour.surplus_syncs;
@@ -160,7 +185,14 @@ impl Slave {
                 return;
             };
             let kind = tpdo.communication.kind;
+            if kind == SAMPLED_BY_SYNC {
+                tpdo.sampled = tpdo.payload(&self.objects);
+            }
             if !tpdo.communication.valid || kind > 240 {
+                continue;
+            }
+            tpdo.waits &= counter.is_some() && counter != Some(tpdo.communication.start);
+            if tpdo.waits {
                 continue;
             }
             tpdo.syncs = tpdo.syncs.saturating_add(1);
@@ -227,7 +259,13 @@ impl Slave {
         let Some(tpdo) = self.tpdos.get_mut(number) else {
             return;
         };
-        let payload = tpdo.payload(&self.objects);
+        let latched =
+            tpdo.communication.kind == SAMPLED_BY_SYNC && self.behaviour.remote_sample_kept;
+        let payload = if latched {
+            tpdo.sampled
+        } else {
+            tpdo.payload(&self.objects)
+        };
         let period = tpdo.communication.event_timer;
         // A timer that was due keeps its pace; one that was not starts again.
         let from = tpdo.timer.filter(|timer| *timer <= at).unwrap_or(at);

@@ -8,6 +8,12 @@ pub(crate) const NO_TPDO_ON_START: Variant = Variant {
     apply: |behaviour| behaviour.canopen.tpdo_on_start = false,
 };
 
+pub(crate) const TPDO_WITH_FIRST_SYNC: Variant = Variant {
+    name: "tpdo-with-first-sync",
+    words: "sends a cyclic TPDO with the first SYNC, then with every n-th: CiA 301 leaves open which is the first",
+    apply: |behaviour| behaviour.canopen.tpdo_with_first_sync = true,
+};
+
 pub(crate) const REMOTE_FRAMES_IGNORED: Variant = Variant {
     name: "remote-frames-ignored",
     words: "does not answer a remote frame for a TPDO: CiA advises against them, a device need not",
@@ -18,6 +24,16 @@ pub(crate) const HEARTBEAT_AT_ONCE: Variant = Variant {
     name: "heartbeat-at-once",
     words: "sends its first heartbeat when 1017h is written, the next a period later",
     apply: |behaviour| behaviour.canopen.heartbeat_on_write = true,
+};
+
+pub(crate) const SMALL_BLOCKS: Variant = Variant {
+    name: "small-blocks",
+    words: "takes blocks of 4 segments, gives no size before a block upload and never switches to the ordinary one",
+    apply: |behaviour| {
+        behaviour.canopen.block.block_size = 4;
+        behaviour.canopen.block.size_given = false;
+        behaviour.canopen.block.switches = false;
+    },
 };
 
 pub(crate) const SLOW: Variant = Variant {

@@ -9,9 +9,12 @@ use super::pdo;
 use super::pdo_rules::{self, Parameter};
 use super::sync;
 use super::{Abort, Address, Answer, Application, Slave};
+use super::{cob_id, consumers, emergency, time};
 
 const STORE: u16 = 0x1010;
 const RESTORE: u16 = 0x1011;
+/// The parameter of the second SDO server.
+pub(super) const SECOND_SDO_SERVER: u16 = 0x1201;
 
 impl Slave {
     /// Writes `value` to the object at `slot`, for an SDO or a PDO; `false` if the application will say when it is done.
@@ -66,7 +69,14 @@ impl Slave {
         let number = bytes.fold(0, |number, byte| number << 8 | u32::from(*byte));
         let index = address.index();
         if let Some(parameter) = Parameter::of(index) {
-            pdo_rules::check(&self.objects, &self.profile, parameter, address, value)?;
+            pdo_rules::check(
+                &self.objects,
+                &self.profile,
+                &self.behaviour,
+                parameter,
+                address,
+                value,
+            )?;
         } else if address == sync::COB_ID {
             sync::check(
                 &self.profile,
@@ -92,7 +102,24 @@ impl Slave {
                 return Err(Abort::INVALID_VALUE);
             }
         }
+        if self.profile.complete {
+            self.service_permitted(address, number)?;
+        }
         Ok(true)
+    }
+
+    /// The rules of services that not every slave has.
+    fn service_permitted(&self, address: Address, value: u32) -> Result<(), Abort> {
+        let number = |address| self.objects.number(address).unwrap_or(0);
+        let valid = |cob_id| cob_id & pdo::INVALID == 0;
+        match (address.index(), address.sub()) {
+            _ if address == sync::OVERFLOW => sync::check_overflow(number(sync::CYCLE), value),
+            _ if address == emergency::COB_ID => cob_id::check(number(address), value, valid),
+            _ if address == time::COB_ID => cob_id::check(number(address), value, time::in_use),
+            (SECOND_SDO_SERVER, 1 | 2) => cob_id::check(number(address), value, valid),
+            (consumers::CONSUMER_TIME, 1..) => consumers::check(&self.objects, address, value),
+            _ => Ok(()),
+        }
     }
 
     /// 1010h takes `save`, 1011h `load`; both only where bit 0 of the value says that they can.
@@ -103,8 +130,17 @@ impl Slave {
         } else {
             b"load"
         };
-        if !able || value != signature {
+        let any = address.index() == STORE && self.behaviour.stores_without_signature;
+        if !able || (value != signature && !any) {
             return Err(Abort::CANNOT_STORE);
+        }
+        let does = if address.index() == STORE {
+            self.behaviour.stores
+        } else {
+            self.behaviour.restores
+        };
+        if !does {
+            return Ok(());
         }
         let group = memory::group(address.sub());
         self.memory
@@ -137,12 +173,20 @@ impl Slave {
             } else {
                 self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
             }
-        } else if address == sync::COB_ID || address == sync::CYCLE {
+        } else if [sync::COB_ID, sync::CYCLE, sync::OVERFLOW].contains(&address) {
             self.reconfigure_sync(now);
         } else if address == PRODUCER_TIME {
             self.reconfigure_heartbeat(now);
         } else if address == GUARD_TIME || address == LIFE_TIME_FACTOR {
             self.reconfigure_guarding();
+        } else if Some(address) == self.profile.clock_object {
+            self.set_clock(now);
+        } else if self.profile.complete && address == time::COB_ID {
+            self.reconfigure_time(now);
+        } else if self.profile.complete && index == consumers::CONSUMER_TIME {
+            self.reconfigure_consumers(now);
+        } else if self.profile.complete && index == SECOND_SDO_SERVER {
+            self.reconfigure_second_sdo();
         } else if Some(address) == self.profile.node_object {
             let node = self.objects.number(address).unwrap_or(1);
             self.memory.node = node.to_le_bytes()[0];

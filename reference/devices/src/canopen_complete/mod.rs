@@ -9,7 +9,10 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
 };
 
-use crate::canopen::{self, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{
+    self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
+    block_faults, faults, service_faults,
+};
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
 };
@@ -31,9 +34,26 @@ const OWN_FAULTS: &[Fault] = &[
     faults::TOGGLE_NOT_ALTERNATED,
     faults::SDO_ANSWERED_IN_STOPPED,
     faults::GUARDING_TOGGLE_STUCK,
+    faults::SYNC_NOT_STOPPED,
+    faults::EMERGENCY_WITHOUT_REGISTER,
+    faults::EVENT_TIMER_UNIT,
+    faults::MAPPING_ENTRY_BYTE_ORDER,
+    faults::LSS_REVISION_ANSWERS_5B,
+    faults::LSS_STORE_FORGETS,
+    faults::LSS_SELECTION_NOT_CONFIRMED,
+    faults::LSS_CONFIGURATION_UNCHECKED,
+    faults::LSS_IDENTITY_BYTE_ORDER,
+    faults::LSS_SERIAL_IGNORED,
+    faults::LSS_BIT_TIMING_MISSING,
 ];
-const FAULTS: [Fault; faults::COMMON.len() + OWN_FAULTS.len()] =
-    all_of(&[faults::COMMON, OWN_FAULTS]);
+const FAULTS: [Fault;
+    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
+    all_of(&[
+        faults::COMMON,
+        service_faults::ALL,
+        OWN_FAULTS,
+        block_faults::BLOCK,
+    ]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -45,10 +65,11 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
     }],
     faults: &FAULTS,
     variants: &[
+        canopen::variants::TPDO_WITH_FIRST_SYNC,
         canopen::variants::NO_TPDO_ON_START,
-        canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
+        canopen::variants::SMALL_BLOCKS,
     ],
     build,
 };
@@ -59,6 +80,15 @@ static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
     ))
     .dictionary
 });
+
+fn documented() -> Behaviour {
+    let mut behaviour = Behaviour::default();
+    behaviour.canopen.block = BlockTransfer {
+        offered: true,
+        ..BlockTransfer::default()
+    };
+    behaviour
+}
 
 fn profile() -> Profile {
     Profile {
@@ -74,12 +104,14 @@ fn profile() -> Profile {
         saved_on_write: &[],
         node_object: None,
         bit_rate_object: None,
+        complete: true,
+        clock_object: Some(Address::new(0x200C, 0)),
         twins: &[],
     }
 }
 
 fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
-    let behaviour = KIND.behaviour(Behaviour::default(), settings)?;
+    let behaviour = KIND.behaviour(documented(), settings)?;
     let factory = Factory {
         node: settings.node.unwrap_or(NODE),
         bit_rate: BIT_RATE,

@@ -94,6 +94,8 @@ fn profile() -> Profile {
         saved_on_write: &[],
         node_object: None,
         bit_rate_object: None,
+        complete: false,
+        clock_object: None,
         twins: &[],
     }
 }

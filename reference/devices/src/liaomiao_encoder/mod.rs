@@ -133,6 +133,8 @@ fn profile() -> Profile {
         saved_on_write: &[0x2002, 0x2004, 0x2005, 0x6003, 0x6200],
         node_object: Some(Address::new(0x3000, 0)),
         bit_rate_object: Some(Address::new(0x3001, 0)),
+        complete: false,
+        clock_object: None,
         twins: TWINS,
     }
 }

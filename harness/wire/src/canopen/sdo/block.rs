@@ -107,6 +107,20 @@ pub(super) fn crc_and_size(crc: bool, size: Option<u32>) -> (u8, [u8; 4]) {
     (flags, size.unwrap_or(0).to_le_bytes())
 }
 
+/// The CRC of a block transfer over its whole value: polynomial x^16 + x^12 + x^5 + 1, beginning with 0, most
+/// significant bit first.
+pub fn block_crc(value: &[u8]) -> u16 {
+    let mut crc = 0_u16;
+    for byte in value {
+        crc ^= u16::from(*byte) << 8;
+        for _ in 0..8 {
+            let polynomial = if crc & 0x8000 == 0 { 0 } else { 0x1021 };
+            crc = crc << 1 ^ polynomial;
+        }
+    }
+    crc
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,6 +145,12 @@ mod tests {
             violation.to_string(),
             "range: found 80h at byte 0, expected a segment number from 1 to 127"
         );
+    }
+
+    #[test]
+    fn the_crc_has_its_check_value() {
+        assert_eq!(block_crc(b"123456789"), 0x31C3);
+        assert_eq!(block_crc(b""), 0);
     }
 
     proptest! {

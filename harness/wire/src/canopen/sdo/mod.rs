@@ -17,7 +17,7 @@ mod data;
 mod request;
 mod response;
 
-pub use block::{BlockSegment, BlockSize, SegmentNumber, UnusedBytes};
+pub use block::{BlockSegment, BlockSize, SegmentNumber, UnusedBytes, block_crc};
 pub use data::{Data, Expedited, Segment, SegmentData, Transfer};
 pub use request::Request;
 pub use response::Response;

@@ -2,6 +2,7 @@
 
 use fieldproof_link::Instant;
 
+use super::block::END;
 use super::{LONGEST_VALUE, Refusal, SEGMENT, Transfer, is_mapping_entry};
 use crate::canopen::{Abort, Address, Application, Slave};
 
@@ -20,23 +21,12 @@ impl Slave {
         application: &mut dyn Application,
     ) -> Result<(), Refusal> {
         let refused = |abort| (address, abort);
+        self.forget_segments();
         self.sdo.transfer = Transfer::None;
-        let slot = self.objects.find(address).map_err(refused)?;
-        let Some(object) = self.objects.at(slot).filter(|object| object.writable) else {
-            return Err(refused(Abort::READ_ONLY));
-        };
-        let fixed = object.size();
         let sized = command & 0x01 != 0;
         if command & 0x02 == 0 {
             let size = sized.then(|| u32::from_le_bytes(data) as usize);
-            let longest = fixed.unwrap_or(LONGEST_VALUE);
-            match size {
-                Some(size) if size > longest => return Err(refused(Abort::TOO_LONG)),
-                Some(size) if fixed.is_some_and(|fixed| size < fixed) => {
-                    return Err(refused(Abort::TOO_SHORT));
-                }
-                _ => {}
-            }
+            self.check_download(address, size).map_err(refused)?;
             self.sdo.buffer.clear();
             self.sdo.transfer = Transfer::Download {
                 address,
@@ -46,6 +36,7 @@ impl Slave {
             self.confirm(now, 0x60, address, [0; 4]);
             return Ok(());
         }
+        let (slot, fixed) = self.check_download(address, None).map_err(refused)?;
         let size = if sized {
             4 - usize::from(command >> 2 & 0x03)
         } else {
@@ -57,6 +48,23 @@ impl Slave {
         }
         let value = data.get(..size).unwrap_or(&data);
         self.commit(now, 0x60, address, slot, value, application)
+    }
+
+    /// The slot and the size of an object that may be written, and with that many bytes, as far as can be said before
+    /// they come.
+    pub(super) fn check_download(
+        &self,
+        address: Address,
+        size: Option<usize>,
+    ) -> Result<(usize, Option<usize>), Abort> {
+        let slot = self.objects.find(address)?;
+        let object = self.objects.at(slot).filter(|object| object.writable);
+        let fixed = object.ok_or(Abort::READ_ONLY)?.size();
+        match size {
+            Some(size) if size > fixed.unwrap_or(LONGEST_VALUE) => Err(Abort::TOO_LONG),
+            Some(size) if fixed.is_some_and(|fixed| size < fixed) => Err(Abort::TOO_SHORT),
+            _ => Ok((slot, fixed)),
+        }
     }
 
     pub(super) fn download_segment(
@@ -108,7 +116,7 @@ impl Slave {
     }
 
     /// Writes, and answers with `command` unless the application takes its time.
-    fn commit(
+    pub(super) fn commit(
         &mut self,
         now: Instant,
         command: u8,
@@ -152,6 +160,9 @@ impl Slave {
         address: Address,
         echo: [u8; 4],
     ) {
+        if command == END && !self.behaviour.block.end_confirmed {
+            return;
+        }
         if command != 0x60 {
             return self.confirm_segment(now, command);
         }

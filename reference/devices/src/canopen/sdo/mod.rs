@@ -1,17 +1,20 @@
-//! The SDO server: expedited and segmented transfers.
+//! The SDO server: expedited, segmented and block transfers.
 
+mod block;
 mod download;
 mod upload;
 
-use fieldproof_can::Frame;
+use fieldproof_can::{Frame, StandardId};
 use fieldproof_link::Instant;
 
 use super::pdo_rules::Parameter;
 use super::queue::{Service, identifier};
 use super::{Abort, AbortMultiplexer, Address, Application, Slave};
+use block::{AskedBlocks, BlockDownload, BlockUpload};
+pub use block::{BlockTransfer, Recovery};
 
-/// The longest value of an object without a fixed size.
-const LONGEST_VALUE: usize = 1024;
+/// The longest value of an object without a fixed size, in bytes.
+const LONGEST_VALUE: usize = 1 << 15;
 /// Data bytes of a segment.
 const SEGMENT: usize = 7;
 
@@ -33,10 +36,27 @@ enum Transfer {
         size: Option<usize>,
         toggle: bool,
     },
+    BlockUpload(BlockUpload),
+    BlockDownload(BlockDownload),
     /// The application is reading.
-    Reading(Address),
+    Reading {
+        address: Address,
+        asked: Asked,
+    },
     /// The application is writing; the last answer's command byte is kept.
-    Writing { address: Address, command: u8 },
+    Writing {
+        address: Address,
+        command: u8,
+    },
+}
+
+/// How a client wants a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Asked {
+    /// Expedited or in segments.
+    Ordinary,
+    /// In blocks.
+    Blocks(AskedBlocks),
 }
 
 /// The server's own memory.
@@ -47,15 +67,33 @@ pub(super) struct Server {
     buffer: Vec<u8>,
     /// What the object last written held before.
     before: Option<(Address, Vec<u8>)>,
+    /// When a block transfer has waited long enough for the client.
+    deadline: Option<Instant>,
+    /// The identifier of its answers, if it is not the default server's.
+    answers_on: Option<u16>,
 }
 
 impl Server {
+    /// A server beside the default one.
+    pub(super) fn answering_on(identifier: Option<u16>) -> Server {
+        Server {
+            answers_on: identifier,
+            ..Server::default()
+        }
+    }
+
     pub(super) const fn name(&self) -> &'static str {
         match self.transfer {
             Transfer::None => "idle",
-            Transfer::Upload { .. } | Transfer::Reading(_) => "upload",
+            Transfer::Upload { .. } | Transfer::Reading { .. } => "upload",
             Transfer::Download { .. } | Transfer::Writing { .. } => "download",
+            Transfer::BlockUpload(_) => "block upload",
+            Transfer::BlockDownload(_) => "block download",
         }
+    }
+
+    pub(super) const fn deadline(&self) -> Option<Instant> {
+        self.deadline
     }
 }
 
@@ -72,26 +110,41 @@ impl Slave {
         let Ok(request) = <[u8; 8]>::try_from(frame.bytes()) else {
             return;
         };
-        let [command, m0, m1, m2, data @ ..] = request;
+        let outcome = match self.serve_blocks(now, &request, application) {
+            Some(outcome) => outcome,
+            None => self.serve_ordinary(now, &request, application),
+        };
+        if let Err((address, abort)) = outcome {
+            self.abort(now, address, abort);
+        }
+        self.await_block_request(now);
+    }
+
+    fn serve_ordinary(
+        &mut self,
+        now: Instant,
+        request: &[u8; 8],
+        application: &mut dyn Application,
+    ) -> Result<(), Refusal> {
+        let [command, m0, m1, m2, data @ ..] = *request;
         let address = Address::from_multiplexer([m0, m1, m2]);
-        let outcome = match command >> 5 {
-            0 => self.download_segment(now, &request, application),
+        match command >> 5 {
+            0 => self.download_segment(now, request, application),
             1 => self.initiate_download(now, command, address, data, application),
-            2 => self.initiate_upload(now, address, application),
+            2 => self.begin_upload(now, address, Asked::Ordinary, application),
             3 => self.upload_segment(now, command, address),
             4 => {
+                self.forget_segments();
                 self.sdo.transfer = Transfer::None;
                 Ok(())
             }
             _ if self.behaviour.unknown_command_refused => Err((address, Abort::UNKNOWN_COMMAND)),
             _ => Ok(()),
-        };
-        if let Err((address, abort)) = outcome {
-            self.abort(now, address, abort);
         }
     }
 
     pub(super) fn abort(&mut self, now: Instant, address: Address, abort: Abort) {
+        self.forget_segments();
         self.sdo.transfer = Transfer::None;
         let named = match self.behaviour.abort_multiplexer {
             AbortMultiplexer::OfRequest => address,
@@ -115,7 +168,16 @@ impl Slave {
 
     pub(super) fn respond_from(&mut self, now: Instant, node: u8, response: [u8; 8]) {
         let at = now + self.turnaround();
-        let identifier = identifier(0x580 + u16::from(node));
+        self.respond_at(at, node, response);
+    }
+
+    /// The identifier of this server's answers.
+    fn answers_from(&self, node: u8) -> StandardId {
+        identifier(self.sdo.answers_on.unwrap_or(0x580 + u16::from(node)))
+    }
+
+    fn respond_at(&mut self, at: Instant, node: u8, response: [u8; 8]) {
+        let identifier = self.answers_from(node);
         self.queue
             .push(at, Service::Sdo, Frame::of_eight(identifier, response));
     }

@@ -2,31 +2,33 @@
 
 use fieldproof_link::Instant;
 
-use super::{Refusal, SEGMENT, Transfer, is_mapping_entry};
+use super::{Asked, Refusal, SEGMENT, Transfer, is_mapping_entry};
 use crate::canopen::{Abort, Address, Answer, Application, Slave};
 
 impl Slave {
-    pub(super) fn initiate_upload(
+    pub(super) fn begin_upload(
         &mut self,
         now: Instant,
         address: Address,
+        asked: Asked,
         application: &mut dyn Application,
     ) -> Result<(), Refusal> {
         let refused = |abort| (address, abort);
+        self.forget_segments();
         self.sdo.transfer = Transfer::None;
         let slot = self.objects.find(address).map_err(refused)?;
         if self.objects.at(slot).is_none_or(|object| !object.readable) {
             return Err(refused(Abort::WRITE_ONLY));
         }
         match application.reading(address) {
-            Answer::Now => self.answer_upload(now, address, slot),
+            Answer::Now => self.answer_upload(now, address, slot, asked),
             Answer::Refused(abort) => return Err(refused(abort)),
-            Answer::Later => self.sdo.transfer = Transfer::Reading(address),
+            Answer::Later => self.sdo.transfer = Transfer::Reading { address, asked },
         }
         Ok(())
     }
 
-    fn answer_upload(&mut self, now: Instant, address: Address, slot: usize) {
+    fn answer_upload(&mut self, now: Instant, address: Address, slot: usize, asked: Asked) {
         let before = self.sdo.before.as_ref();
         let before = before.filter(|(written, _)| *written == address);
         let value = match (before, self.objects.at(slot)) {
@@ -34,6 +36,12 @@ impl Slave {
             (None, Some(object)) => object.value(),
             (None, None) => return,
         };
+        if let Asked::Blocks(blocks) = asked
+            && !blocks.switches(self, value.len())
+        {
+            let value = value.to_vec();
+            return self.answer_block_upload(now, address, &value, blocks);
+        }
         let mut response = [0; 8];
         let [command, m0, m1, m2, data @ ..] = &mut response;
         [*m0, *m1, *m2] = address.multiplexer();
@@ -121,13 +129,21 @@ impl Slave {
         if let Ok(value) = outcome {
             self.objects.set(address, value);
         }
-        if self.sdo.transfer != Transfer::Reading(address) {
+        let Transfer::Reading {
+            address: awaited,
+            asked,
+        } = self.sdo.transfer
+        else {
+            return;
+        };
+        if awaited != address {
             return;
         }
         self.sdo.transfer = Transfer::None;
         match (outcome, self.objects.find(address)) {
-            (Ok(_), Ok(slot)) => self.answer_upload(now, address, slot),
+            (Ok(_), Ok(slot)) => self.answer_upload(now, address, slot, asked),
             (Err(abort), _) | (_, Err(abort)) => self.abort(now, address, abort),
         }
+        self.await_block_request(now);
     }
 }
