@@ -48,6 +48,8 @@ pub struct SocketCan {
     dropped: u32,
     /// If the adapter stamps frames.
     hardware: Option<HardwareClock>,
+    /// The instant of the last message.
+    last: Instant,
 }
 
 impl SocketCan {
@@ -106,6 +108,7 @@ impl SocketCan {
             leaving: VecDeque::new(),
             dropped: 0,
             hardware: has_hardware_stamps.then(HardwareClock::default),
+            last: Instant::START,
         })
     }
 
@@ -192,10 +195,13 @@ impl SocketCan {
             Some(stamp) => clock.at(stamp),
             None => clock.now(),
         };
-        match (&mut self.hardware, message.hardware_stamp) {
+        let at = match (&mut self.hardware, message.hardware_stamp) {
             (Some(hardware), Some(stamp)) => hardware.at(stamp, arrived),
             _ => arrived,
-        }
+        };
+        // Where the clocks were compared between two messages, the second may seem to be the earlier by a little.
+        self.last = self.last.max(at);
+        self.last
     }
 }
 
@@ -231,15 +237,19 @@ impl Port for SocketCan {
         Ok(())
     }
 
-    /// The system call waits for as many frames as it is asked for: those that have not come back yet, which on an idle
-    /// bus are back before the answer is there, and one more.
+    /// While frames are leaving, the system call is asked to wait for them and one more: on an idle bus they are back
+    /// before the answer is there. Else it waits for one, and takes all that are there: a full bus leaves no time for a
+    /// call for each.
     fn take_waiting(
         &mut self,
         clock: &mut Clock,
         news: &mut Vec<News>,
     ) -> Option<Result<(), LinkError>> {
-        let count = (self.leaving.len() + 1).min(BATCH);
-        let taken = self.take_batch(count, MsgFlags::empty(), clock, news);
+        let (count, flags) = match self.leaving.len() {
+            0 => (BATCH, MsgFlags::MSG_WAITFORONE),
+            leaving => ((leaving + 1).min(BATCH), MsgFlags::empty()),
+        };
+        let taken = self.take_batch(count, flags, clock, news);
         Some(taken.map(|_| ()))
     }
 

@@ -18,7 +18,7 @@ sources:
 ports:
   can: {can: 1 Mbit/s}
 canopen: {node: 1, eds: none.eds}
-features: [sdo-server, sdo-segmented]
+features: [sdo-server, sdo-segmented, sdo-block]
 ";
 
 /// How large the large object is, in bytes.
@@ -32,7 +32,7 @@ struct Read {
     worth: f64,
 }
 
-const READS: [Read; 2] = [
+const READS: [Read; 3] = [
     Read {
         name: "fieldproof",
         step: "{object: \"1000:00\", as: u32, expect: 0x000F0191}",
@@ -43,6 +43,12 @@ const READS: [Read; 2] = [
         name: "fieldproof-segmented",
         step: "{object: \"2000:00\", as: text}",
         times_a_second: 8.0,
+        worth: LARGE_SIZE,
+    },
+    Read {
+        name: "fieldproof-block",
+        step: "{object: \"2000:00\", as: bytes, transfer: block}",
+        times_a_second: 20.0,
         worth: LARGE_SIZE,
     },
 ];
