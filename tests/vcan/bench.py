@@ -19,7 +19,7 @@ START_SECONDS = 30
 END_SECONDS = 20
 
 # What the scheduler of a busy machine does to every instant; the bus itself is a thousand times better.
-UNCERTAINTY = "20ms"
+UNCERTAINTY = "10ms"
 
 
 @dataclass

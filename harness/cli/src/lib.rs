@@ -28,9 +28,9 @@ pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use operator::Operator;
 pub use options::{
-    BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName, Format,
-    ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, SchemaKind, Selection,
-    ServeOptions, StimulateOptions,
+    AddressList, BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName,
+    Format, ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, ScanOptions,
+    SchemaKind, Selection, ServeOptions, StimulateOptions,
 };
 pub use player::{Plan, play};
 
@@ -52,6 +52,7 @@ pub fn main(options: &Options) -> Exit {
         Command::Bus(options) => commands::bus::bus(options, &mut screen),
         Command::Prove(options) => commands::prove::prove(options, &mut screen),
         Command::Serve(options) => commands::serve::serve(options, &mut screen),
+        Command::Scan(options) => commands::scan::scan(options, &mut screen),
         Command::Stimulate(options) => commands::stimulate::stimulate(options),
         Command::NewDevice(options) => commands::new_device::new_device(options, &mut screen),
         Command::Export { directory, force } => {

@@ -6,10 +6,26 @@ use fieldproof_link::real::{
     LocalEcho, OpenError, Port, Serial, SerialOptions, Slcan, SocketCan, Tcp, TcpServer,
 };
 use fieldproof_link::{Framing, SerialSettings};
+use fieldproof_report::{Problem, Severity};
 use fieldproof_suite::bench::{self, Echo, Link, LinkKind};
 use fieldproof_suite::device::PortDescription;
 
 use crate::bench::serial;
+use crate::complaint::Complaint;
+
+/// Reads a link from the command line.
+///
+/// # Errors
+/// It is none.
+pub(crate) fn read(text: &str) -> Result<Link, Complaint> {
+    text.parse::<Link>().map_err(|wrong| {
+        let problem = Problem::new(Severity::Error, wrong.message).note(wrong.expected);
+        Complaint::input(match wrong.help {
+            Some(help) => problem.help(help),
+            None => problem,
+        })
+    })
+}
 
 /// Opens `link` for the port `role`, set as the link says, or else as the device's description does.
 ///

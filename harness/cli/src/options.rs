@@ -63,6 +63,8 @@ pub enum Command {
     Prove(ProveOptions),
     /// Run a reference device on real links until interrupted
     Serve(ServeOptions),
+    /// Find out what is on a link, and write a bench to start from
+    Scan(ScanOptions),
     /// Do something beside the bus to a device that is served
     Stimulate(StimulateOptions),
     /// Offer a CAN bus without adapters, which programs share over SLCAN, until interrupted
@@ -189,6 +191,82 @@ pub struct StimulateOptions {
     /// `setting NAME VALUE`.
     #[arg(value_name = "STIMULUS", required = true, allow_hyphen_values = true)]
     pub stimulus: Vec<String>,
+}
+
+/// Options of `scan`.
+#[derive(Debug, Args)]
+#[command(after_help = SCAN_EXIT_CODES)]
+pub struct ScanOptions {
+    /// The link: `socketcan:can0`, `slcan:/dev/ttyACM0@250000`, `serial:/dev/ttyUSB0?baud=9600&parity=none`,
+    /// `tcp:192.168.0.5:502`. A serial line is set to 19200 baud, even parity and 1 stop bit, unless it says otherwise.
+    #[arg(long, value_name = "LINK")]
+    pub on: String,
+    /// Bits a second of a CAN bus [default: what the link or its interface says, else 500000]
+    #[arg(long, value_name = "BITS", value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub bit_rate: Option<u32>,
+    /// How long to listen on a CAN bus before anything is asked, in milliseconds.
+    #[arg(long, value_name = "MS", default_value_t = 1000, value_parser = value_parser!(u32).range(..=3_600_000))]
+    pub listen: u32,
+    /// How long a device may take to answer, in milliseconds [default: 500 on CAN, 200 for Modbus]
+    #[arg(long, value_name = "MS", value_parser = value_parser!(u32).range(1..=60_000))]
+    pub timeout: Option<u32>,
+    /// Ask LSS slaves for their identity, too: those without a node-ID, or the only slave there is. They are switched to
+    /// configuration for that, and back to waiting.
+    #[arg(long)]
+    pub lss: bool,
+    /// Ask these Modbus addresses only: `1-32,40`; on Modbus TCP they are units.
+    #[arg(long, value_name = "LIST")]
+    pub addresses: Option<AddressList>,
+    /// What is found and not recognised is this device, by name or by the folder of its device.yaml.
+    #[arg(long, value_name = "NAME|DIR")]
+    pub device: Option<String>,
+    /// Write the bench into this file.
+    #[arg(long, value_name = "FILE")]
+    pub bench: Option<PathBuf>,
+    /// Overwrite that file if it is there.
+    #[arg(long, requires = "bench")]
+    pub force: bool,
+    /// How to print what is found.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+const SCAN_EXIT_CODES: &str =
+    "It only listens and reads; with --lss it switches LSS slaves, and back.
+
+Exit codes:
+  0  something was found
+  1  nothing was found, or nothing that the bench asked for can be written of
+  2  the input was wrong
+  3  the link cannot be opened, or it broke, or the bench cannot be written";
+
+/// Modbus addresses, in the order they are given.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AddressList(pub Vec<u8>);
+
+impl std::str::FromStr for AddressList {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<AddressList, String> {
+        let number = |text: &str| {
+            let number = text.trim().parse::<u8>();
+            number.map_err(|_| format!("`{text}` is no address from 0 to 255"))
+        };
+        let mut addresses = Vec::new();
+        for part in text.split(',') {
+            let (first, last) = match part.split_once('-') {
+                Some((first, last)) => (number(first)?, number(last)?),
+                None => (number(part)?, number(part)?),
+            };
+            if first > last {
+                return Err(format!("`{part}` goes backwards"));
+            }
+            let new = (first..=last).filter(|it| !addresses.contains(it));
+            let new: Vec<u8> = new.collect();
+            addresses.extend(new);
+        }
+        Ok(AddressList(addresses))
+    }
 }
 
 /// Options of `list`.
@@ -379,5 +457,16 @@ mod tests {
     #[test]
     fn options_are_consistent() {
         Options::command().debug_assert();
+    }
+
+    #[test]
+    fn addresses_are_numbers_and_ranges() {
+        let read = |text: &str| text.parse::<AddressList>().map(|list| list.0);
+        assert_eq!(read("7"), Ok(vec![7]));
+        assert_eq!(read("1-3,255,2"), Ok(vec![1, 2, 3, 255]));
+        assert_eq!(read("9-3"), Err("`9-3` goes backwards".to_owned()));
+        for wrong in ["", "256", "1-", "x", "1,,2", "-1"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -8,17 +8,23 @@ pub(crate) struct Progress(ProgressBar);
 impl Progress {
     /// For so many cases; hidden unless `shown`.
     pub(crate) fn new(cases: u64, shown: bool) -> Progress {
-        let bar = ProgressBar::new(cases);
+        Progress::of(cases, "cases", shown)
+    }
+
+    /// For so many of what `unit` says; hidden unless `shown`.
+    pub(crate) fn of(number: u64, unit: &'static str, shown: bool) -> Progress {
+        let bar = ProgressBar::new(number);
         if !shown {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} cases  {elapsed}") {
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}  {elapsed}") {
             bar.set_style(style);
+            bar.set_message(unit);
         }
         Progress(bar)
     }
 
-    /// One more case is finished.
+    /// One more is finished.
     pub(crate) fn step(&self) {
         self.0.inc(1);
     }

@@ -2,7 +2,8 @@
 //!
 //! [`play_lane`] is the whole of it: it finds the device, then for each case that applies ([`skip_reason`]) brings the
 //! device there, plays control and steps, judges what came and nobody expected, and puts everything back. It never asks
-//! which kind of link it is on; what differs it reads from the ports' properties.
+//! which kind of link it is on; what differs it reads from the ports' properties. [`scan`] finds out what is on a bus
+//! of which nothing is known.
 
 mod applies;
 mod case;
@@ -18,6 +19,7 @@ mod object_names;
 mod pdo_procedure;
 mod relocate;
 mod restore;
+pub mod scan;
 mod sdo;
 mod sdo_block;
 mod selected;

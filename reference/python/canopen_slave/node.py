@@ -29,6 +29,7 @@ class Node(LocalNode):
         self._transmit: list[TransmitPdo] = []
         self._receive: list[ReceivePdo] = []
         self._sync_id: int | None = None
+        self._sends_sync = False
         self._errors: list[int] = []
 
     # What the rest of the slave asks.
@@ -67,7 +68,7 @@ class Node(LocalNode):
     def end(self) -> None:
         """The node falls silent and hears nothing any more."""
         self.nmt.end()
-        self.network.sync.stop()
+        self._stop_sync()
         for pdo in [*self._transmit, *self._receive]:
             pdo.stop()
             identifier, callback = pdo.map.cob_id, pdo.map.on_message
@@ -177,7 +178,7 @@ class Node(LocalNode):
     def _follow_sync(self) -> None:
         """Listens for SYNC as 1005h says, and sends it every 1006h microseconds if bit 30 of 1005h is set."""
         self._unsubscribe_sync()
-        self.network.sync.stop()
+        self._stop_sync()
         if 0x1005 not in self.object_dictionary:
             return
         cob_id = self.number(0x1005, 0)
@@ -187,6 +188,13 @@ class Node(LocalNode):
         if cob_id & objects.GENERATE_SYNC and period_us:
             self.network.sync.cob_id = self._sync_id
             self.network.sync.start(period_us / 1_000_000)
+            self._sends_sync = True
+
+    def _stop_sync(self) -> None:
+        # The library keeps a task that has ended, and the kernel refuses to end one twice.
+        if self._sends_sync:
+            self._sends_sync = False
+            self.network.sync.stop()
 
     def _unsubscribe_sync(self) -> None:
         if self._sync_id is not None:

@@ -24,7 +24,7 @@ from canopen_slave.bus import open_bus
 from masters.checks import Checks
 
 # Entries whose value after a reset is not the default of the EDS: what the inverter behind the module reads.
-OTHER_DEFAULTS = {("teco-jn5-cm-can", 0x2025, sub) for sub in range(0x21, 0x31)}
+OTHER_DEFAULTS = {("teco-jn5-cm-can", 0x2025, sub) for sub in range(0x21, 0x31)} | {("teco-jn5-cm-can", 0x6043, 0)}
 # Devices with LSS, and objects of an RPDO1 that may be written while the drive is at rest.
 WITH_LSS = {"liaomiao-encoder"}
 RPDO_VALUES = {

@@ -9,6 +9,7 @@ pub(crate) mod list;
 pub(crate) mod new_device;
 pub(crate) mod prove;
 pub(crate) mod run;
+pub(crate) mod scan;
 pub(crate) mod schema;
 pub(crate) mod serve;
 pub(crate) mod stimulate;

@@ -133,16 +133,8 @@ fn split(text: &str) -> Result<On<'_>, Complaint> {
         Some((role, link)) if !role.contains(':') => (Some(role), link),
         _ => (None, text),
     };
-    match link.parse::<Link>() {
-        Ok(link) => Ok(On { text, role, link }),
-        Err(wrong) => {
-            let problem = Problem::new(Severity::Error, wrong.message).note(wrong.expected);
-            Err(Complaint::input(match wrong.help {
-                Some(help) => problem.help(help),
-                None => problem,
-            }))
-        }
-    }
+    let link = links::read(link)?;
+    Ok(On { text, role, link })
 }
 
 fn no_port(kind: &DeviceKind, text: &str, role: Option<&str>) -> Complaint {

@@ -112,6 +112,11 @@ impl SocketCan {
         })
     }
 
+    /// What the interface called `name` is set to, in bits a second, if there is one and it has a bit rate.
+    pub fn bit_rate_of(name: &str) -> Option<u32> {
+        CanInterface::open(name).ok()?.bit_rate().ok().flatten()
+    }
+
     /// Takes up to `count` messages; how many.
     fn take_batch(
         &mut self,
