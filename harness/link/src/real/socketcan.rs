@@ -48,6 +48,8 @@ pub struct SocketCan {
     dropped: u32,
     /// If the adapter stamps frames.
     hardware: Option<HardwareClock>,
+    /// The instant of the last message.
+    last: Instant,
 }
 
 impl SocketCan {
@@ -106,6 +108,7 @@ impl SocketCan {
             leaving: VecDeque::new(),
             dropped: 0,
             hardware: has_hardware_stamps.then(HardwareClock::default),
+            last: Instant::START,
         })
     }
 
@@ -122,17 +125,23 @@ impl SocketCan {
         clock: &mut Clock,
         news: &mut Vec<News>,
     ) -> Result<usize, LinkError> {
-        let mut messages = [Message::EMPTY; BATCH];
-        let messages = &mut messages[..count];
-        let count = match receive(&self.socket, messages, flags) {
-            Ok(count) => count,
+        let mut buffers = [[0; FRAME_LENGTH]; BATCH];
+        let mut slices = buffers.each_mut().map(|it| [IoSliceMut::new(it)]);
+        let ancillary = cmsg_space!(TimeSpec, [TimeSpec; 3], u32);
+        // Not kept for the next time: the kernel shortens the room in them to what it has used.
+        let mut headers = MultiHeaders::<()>::preallocate(count, Some(ancillary));
+        let room = slices.iter_mut().take(count);
+        let received = match recvmmsg(self.socket.as_raw_fd(), &mut headers, room, flags, None) {
+            Ok(received) => received,
             Err(Errno::EAGAIN | Errno::EINTR) => return Ok(0),
             Err(error) => return Err(down(&self.properties, error)),
         };
-        for message in &messages[..count] {
-            news.extend(self.news(message, clock)?);
+        let mut taken = 0;
+        for message in received {
+            news.extend(self.news(&Message::read(&message), clock)?);
+            taken += 1;
         }
-        Ok(count)
+        Ok(taken)
     }
 
     /// One message of the socket.
@@ -191,10 +200,13 @@ impl SocketCan {
             Some(stamp) => clock.at(stamp),
             None => clock.now(),
         };
-        match (&mut self.hardware, message.hardware_stamp) {
+        let at = match (&mut self.hardware, message.hardware_stamp) {
             (Some(hardware), Some(stamp)) => hardware.at(stamp, arrived),
             _ => arrived,
-        }
+        };
+        // Where the clocks were compared between two messages, the second may seem to be the earlier by a little.
+        self.last = self.last.max(at);
+        self.last
     }
 }
 
@@ -230,15 +242,19 @@ impl Port for SocketCan {
         Ok(())
     }
 
-    /// The system call waits for as many frames as it is asked for: those that have not come back yet, which on an idle
-    /// bus are back before the answer is there, and one more.
+    /// While frames are leaving, the system call is asked to wait for them and one more: on an idle bus they are back
+    /// before the answer is there. Else it waits for one, and takes all that are there: a full bus leaves no time for a
+    /// call for each.
     fn take_waiting(
         &mut self,
         clock: &mut Clock,
         news: &mut Vec<News>,
     ) -> Option<Result<(), LinkError>> {
-        let count = (self.leaving.len() + 1).min(BATCH);
-        let taken = self.take_batch(count, MsgFlags::empty(), clock, news);
+        let (count, flags) = match self.leaving.len() {
+            0 => (BATCH, MsgFlags::MSG_WAITFORONE),
+            leaving => ((leaving + 1).min(BATCH), MsgFlags::empty()),
+        };
+        let taken = self.take_batch(count, flags, clock, news);
         Some(taken.map(|_| ()))
     }
 
@@ -309,7 +325,6 @@ fn stamping_uncertainty(interface: &str) -> Duration {
 }
 
 /// One message of the socket, as the kernel gives it.
-#[derive(Clone, Copy)]
 struct Message {
     bytes: [u8; FRAME_LENGTH],
     kernel_stamp: Option<SystemTime>,
@@ -319,51 +334,35 @@ struct Message {
 }
 
 impl Message {
-    const EMPTY: Message = Message {
-        bytes: [0; FRAME_LENGTH],
-        kernel_stamp: None,
-        hardware_stamp: None,
-        dropped: 0,
-    };
-
-    fn read_ancillary(&mut self, received: &RecvMsg<'_, '_, ()>) {
-        let Ok(ancillary) = received.cmsgs() else {
-            return;
+    fn read(received: &RecvMsg<'_, '_, ()>) -> Message {
+        let mut message = Message {
+            bytes: [0; FRAME_LENGTH],
+            kernel_stamp: None,
+            hardware_stamp: None,
+            dropped: 0,
         };
-        for part in ancillary {
-            match part {
-                ControlMessageOwned::ScmTimestampns(stamp) => {
-                    self.kernel_stamp = Some(SystemTime::UNIX_EPOCH + Duration::from(stamp));
-                }
-                ControlMessageOwned::ScmTimestampsns(Timestamps { system, hw_raw, .. }) => {
-                    let system = Duration::from(system);
-                    self.kernel_stamp =
-                        (!system.is_zero()).then(|| SystemTime::UNIX_EPOCH + system);
-                    let hardware = Duration::from(hw_raw);
-                    self.hardware_stamp = (!hardware.is_zero()).then_some(hardware);
-                }
-                ControlMessageOwned::RxqOvfl(dropped) => self.dropped = dropped,
-                _ => {}
+        for (place, byte) in message.bytes.iter_mut().zip(received.iovs().flatten()) {
+            *place = *byte;
+        }
+        for part in received.cmsgs().into_iter().flatten() {
+            message.read_ancillary(part);
+        }
+        message
+    }
+
+    fn read_ancillary(&mut self, part: ControlMessageOwned) {
+        match part {
+            ControlMessageOwned::ScmTimestampns(stamp) => {
+                self.kernel_stamp = Some(SystemTime::UNIX_EPOCH + Duration::from(stamp));
             }
+            ControlMessageOwned::ScmTimestampsns(Timestamps { system, hw_raw, .. }) => {
+                let system = Duration::from(system);
+                self.kernel_stamp = (!system.is_zero()).then(|| SystemTime::UNIX_EPOCH + system);
+                let hardware = Duration::from(hw_raw);
+                self.hardware_stamp = (!hardware.is_zero()).then_some(hardware);
+            }
+            ControlMessageOwned::RxqOvfl(dropped) => self.dropped = dropped,
+            _ => {}
         }
     }
-}
-
-/// Takes up to as many messages as there is room for; how many.
-fn receive(socket: &CanSocket, messages: &mut [Message], flags: MsgFlags) -> Result<usize, Errno> {
-    let mut buffers = [[0; FRAME_LENGTH]; BATCH];
-    let mut slices = buffers.each_mut().map(|it| [IoSliceMut::new(it)]);
-    let ancillary = cmsg_space!(TimeSpec, [TimeSpec; 3], u32);
-    let mut headers = MultiHeaders::<()>::preallocate(messages.len(), Some(ancillary));
-    let room = slices.iter_mut().take(messages.len());
-    let received = recvmmsg(socket.as_raw_fd(), &mut headers, room, flags, None)?;
-    let mut count = 0;
-    for (received, message) in received.zip(messages.iter_mut()) {
-        message.read_ancillary(&received);
-        count += 1;
-    }
-    for (buffer, message) in buffers.iter().zip(messages.iter_mut()) {
-        message.bytes = *buffer;
-    }
-    Ok(count)
 }
