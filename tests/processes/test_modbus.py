@@ -92,10 +92,10 @@ class Modbus(FoldersAndRuns):
 
     def test_a_device_that_goes_away_breaks_the_run_and_keeps_what_was_seen(self) -> None:
         kind = "liaomiao-encoder"
-        link = f"tcp:127.0.0.1:{free_port()}"
+        link = f"tcp:127.0.0.1:{free_port()}?framing=rtu"
         device = Device(kind, kind, [FIELDPROOF, "serve", kind, "--on", link], {"serial": link})
         with self.assertRaisesRegex(AssertionError, "ended"), running(device, self.folder) as process:
-            run = self.start([device], "liaomiao-encoder.modbus")
+            run = self.start([device], "modbus")
             self.wait_for_a_case(run)
             process.kill()
             run.wait(30)
