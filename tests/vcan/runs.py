@@ -70,12 +70,3 @@ class FoldersAndRuns(unittest.TestCase):
         self.addCleanup(run.wait)
         self.addCleanup(run.kill)
         return run
-
-    def wait_for_a_case(self, run: subprocess.Popen[str]) -> None:
-        """Waits until something of the run has been written down."""
-        deadline = time.monotonic() + 30
-        while not any(path.stat().st_size for path in (self.folder / "reports").glob("**/*jsonl*")):
-            self.assertIsNone(run.poll(), "the run ended before its first case")
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.05)
-        time.sleep(1)
