@@ -10,6 +10,8 @@ import json
 import os
 import pathlib
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -104,6 +106,24 @@ class OnVcan(FoldersAndRuns):
         journal = next(run.reports.glob("**/*.jsonl")).read_text(encoding="utf-8").splitlines()
         self.assertEqual(json.loads(journal[-1])["event"], "lane-finished")
         self.assertTrue(list(run.reports.glob("**/*.xml")), "there is no JUnit report")
+
+    def test_an_error_frame_is_an_event_of_the_run(self) -> None:
+        device = served("kinco", "kinco-servo", "vcan0", self.folder, 1)
+        # Controller trouble with both counters: error passive when sending, 136 and 0 errors (linux/can/error.h).
+        error_frame = struct.pack("=IB3x8B", 0x2000_0204, 8, 0, 0x20, 0, 0, 0, 0, 136, 0)
+        with socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as bus, running(device, self.folder):
+            bus.bind(("vcan0",))
+            trouble = threading.Timer(2, lambda: bus.send(error_frame))
+            trouble.start()
+            run = Run(self.folder, [device], "canopen.error-control")
+            trouble.join()
+        self.assertEqual(run.exit, 0, run.error)
+        journal = next(run.reports.glob("**/*.jsonl")).read_text(encoding="utf-8")
+        events = [event for event in map(json.loads, journal.splitlines()) if event["event"] == "bus-error"]
+        self.assertEqual(
+            [(event["what"], event["counters"]) for event in events],
+            [("controller: transmit error passive; transmit errors 136, receive errors 0", [136, 0])],
+        )
 
     def test_an_interrupted_run_puts_the_device_back(self) -> None:
         device = served("kinco", "kinco-servo", "vcan0", self.folder, 1)
