@@ -62,10 +62,10 @@ pub fn serve(
         server.release()?;
         server.follow_lines();
         let until = server.ports.clock.now() + LOOK;
-        let wake_at = server.device.wake_at();
-        server
-            .ports
-            .wait(wake_at.map_or(until, |at| at.min(until)))?;
+        let held_until = server.held.front().map(|held| held.0);
+        let wakes = [server.device.wake_at(), held_until, Some(until)];
+        let next = wakes.into_iter().flatten().min().unwrap_or(until);
+        server.ports.wait(next)?;
     }
     Ok(())
 }
