@@ -61,14 +61,18 @@ impl Device {
         links.is_none_or(|links| links.values().all(|link| link.kind == LinkKind::Sim))
     }
 
-    /// The faults its reference device can have.
+    /// The faults its reference device can have; nothing can be switched on in a real device.
     pub fn faults(&self) -> &'static [Fault] {
-        self.kind.map_or(&[], |kind| kind.faults)
+        self.simulated().map_or(&[], |kind| kind.faults)
     }
 
-    /// The legal variants of its reference device.
+    /// The legal variants of its reference device; a real one is what it is.
     pub fn variants(&self) -> &'static [Variant] {
-        self.kind.map_or(&[], |kind| kind.variants)
+        self.simulated().map_or(&[], |kind| kind.variants)
+    }
+
+    fn simulated(&self) -> Option<&'static DeviceKind> {
+        self.kind.filter(|_| self.is_simulated())
     }
 
     /// Its name on the bench, or else that of its description.

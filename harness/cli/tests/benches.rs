@@ -235,6 +235,18 @@ fn link_that_cannot_be_opened_breaks_the_run() {
     assert!(ran.error().contains(why), "{}", ran.error());
 }
 
+#[test]
+fn fault_cannot_be_switched_on_in_a_real_device() {
+    let folder = Folder::new();
+    let bench = bench("permits: []").replace("sim:", "socketcan:can0");
+    folder.write("lab.yaml", bench);
+    refused(
+        &folder,
+        &["run", "--bench", "lab.yaml", "--fault", "abort-code-wrong"],
+        &["abort-code-wrong"],
+    );
+}
+
 /// The description of the servo drive under another name, which nothing simulates.
 fn unknown_drive(folder: &Folder) {
     assert_eq!(folder.run(&["export", "all"]).exit(), Some(0));

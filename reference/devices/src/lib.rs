@@ -7,6 +7,7 @@
 pub mod canopen;
 mod canopen_complete;
 pub mod catalogue;
+mod conditions;
 mod drive;
 mod huacheng_ssts1;
 pub mod inverter;

@@ -161,7 +161,8 @@ impl Participant for Complete {
             }
             Stimulus::Condition { name, active } => {
                 self.values
-                    .set_condition(now, name, *active, &mut self.slave)?;
+                    .conditions
+                    .set(now, name, *active, &mut self.slave)?;
             }
             Stimulus::Setting { name, value } => match name.as_str() {
                 "node" => self.slave.set_node(now, *value)?,
@@ -183,7 +184,7 @@ impl Participant for Complete {
 
     fn state(&self) -> BTreeMap<String, String> {
         let mut state = self.slave.state();
-        state.extend(self.values.state());
+        state.extend(self.values.conditions.state());
         state
     }
 }

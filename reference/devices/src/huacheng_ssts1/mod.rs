@@ -207,7 +207,7 @@ impl Participant for HuachengSsts1 {
             }
             Stimulus::Condition { name, active } => {
                 let slave = &mut self.slave;
-                self.drive.set_condition(now, name, *active, slave)?;
+                self.drive.conditions.set(now, name, *active, slave)?;
             }
             Stimulus::Setting { name, value } => self.switch(now, name, *value)?,
         }
@@ -226,7 +226,7 @@ impl Participant for HuachengSsts1 {
     fn state(&self) -> BTreeMap<String, String> {
         use modbus::Registers as _;
         let mut state = self.slave.state();
-        state.extend(self.drive.state());
+        state.extend(self.drive.conditions.state());
         state.extend(self.modbus.registers().state());
         state
     }

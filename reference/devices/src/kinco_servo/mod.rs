@@ -142,7 +142,8 @@ impl Participant for KincoServo {
             }
             Stimulus::Condition { name, active } => {
                 self.drive
-                    .set_condition(now, name, *active, &mut self.slave)?;
+                    .conditions
+                    .set(now, name, *active, &mut self.slave)?;
             }
             Stimulus::Setting { name, value } => match name.as_str() {
                 "node" => self.slave.set_node(now, *value)?,
@@ -164,7 +165,7 @@ impl Participant for KincoServo {
 
     fn state(&self) -> BTreeMap<String, String> {
         let mut state = self.slave.state();
-        state.extend(self.drive.state());
+        state.extend(self.drive.conditions.state());
         state
     }
 }
