@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fieldproof_suite::model::{Case, Crc, ModbusRequest, Step};
+use fieldproof_suite::model::{Case, Crc, ModbusRequest, PdoName, Step};
 use fieldproof_suite::{Environment, SourceFile, Suite, load};
 use fieldproof_wire::modbus::crc16_bytes;
 
@@ -241,14 +241,17 @@ fn is_can(step: &Step, text: &str) -> bool {
         Step::ExpectBootUp(_) => frame.bytes() == [0] && frame.id().raw() & 0x780 == 0x700,
         Step::Sync(_) => frame.id().raw() == 0x80,
         Step::ExpectTpdo(tpdo) => {
-            let id = [0x180, 0x280, 0x380, 0x480][usize::from(tpdo.number) - 1];
-            frame.id().raw() & 0x780 == id
+            matches!(tpdo.pdo, PdoName::Number(number)
+                if frame.id().raw() & 0x780 == 0x80 + 0x100 * u32::from(number))
                 && tpdo
                     .data
                     .as_ref()
                     .is_some_and(|data| data.0.matches(frame.bytes()))
         }
-        Step::SendRpdo(rpdo) => rpdo.data.0 == frame.bytes(),
+        Step::SendRpdo(rpdo) => rpdo
+            .data
+            .as_ref()
+            .is_some_and(|data| data.0 == frame.bytes()),
         _ => false,
     }
 }

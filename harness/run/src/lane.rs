@@ -143,6 +143,7 @@ impl<'a> Player<'a> {
             address: job.bench.address,
             main_role: crate::tester::CAN,
             sync_producer: None,
+            sync_period: None,
             restores_by_steps: false,
             steps_begun: false,
             open_transfer: None,

@@ -325,6 +325,14 @@ impl<'a> Session<'a> {
             .any(|received| received.at > self.last_sent.end && wanted(received))
     }
 
+    /// How many of the things that have come and were not expected are like this.
+    pub(crate) fn count(&self, wanted: impl Fn(&Received) -> bool) -> usize {
+        self.inbox
+            .iter()
+            .filter(|received| wanted(received))
+            .count()
+    }
+
     /// Lets time pass until `instant`; what comes is kept.
     pub(crate) fn collect_until(&mut self, mut instant: Instant) -> Result<(), Stop> {
         while let Some(received) = self.next(&mut instant)? {

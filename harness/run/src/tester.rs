@@ -46,6 +46,8 @@ pub(crate) struct Tester<'a> {
     pub(crate) main_role: &'static str,
     /// The SYNC producer of the case, if one runs.
     pub(crate) sync_producer: Option<CompanionIndex>,
+    /// Its period.
+    pub(crate) sync_period: Option<Duration>,
     /// The case says itself how what it changes is put back.
     pub(crate) restores_by_steps: bool,
     /// The object of a segmented or block transfer that has not ended.

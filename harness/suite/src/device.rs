@@ -161,12 +161,20 @@ pub enum Feature {
     SdoBlock,
     /// Sends PDOs.
     Tpdo,
+    /// Sends PDOs of transmission type 0: with the SYNC after an event.
+    AcyclicTpdo,
+    /// Sends an event-driven PDO when what it carries changes.
+    EventTpdo,
     /// Receives PDOs.
     Rpdo,
     /// PDO mapping can be changed.
     DynamicMapping,
+    /// Data types can be mapped as dummies.
+    DummyMapping,
     /// Consumes SYNC.
     SyncConsumer,
+    /// Consumes the counter of SYNC (1019h), and knows start values.
+    SyncCounter,
     /// Produces SYNC.
     SyncProducer,
     /// Sends EMCY.

@@ -53,15 +53,20 @@ pub(crate) fn decode_big_endian<'de, D: Deserializer<'de>>(
     Ok(decode.0.into_iter().map(|one| one.lower(true)).collect())
 }
 
-pub(crate) fn pdo_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
-    within(u8::deserialize(deserializer)?, 1, 4)
+pub(crate) fn optional_pdo_number<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u8>, D::Error> {
+    let number = Option::<u8>::deserialize(deserializer)?;
+    number.map(|number| within(number, 1, 4)).transpose()
 }
 
-pub(crate) fn pdo_data<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Bytes, D::Error> {
-    let bytes = Bytes::deserialize(deserializer)?;
-    if bytes.0.len() <= 8 {
-        return Ok(bytes);
-    }
+pub(crate) fn optional_pdo_data<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Bytes>, D::Error> {
+    let bytes = match Option::<Bytes>::deserialize(deserializer)? {
+        Some(bytes) if bytes.0.len() > 8 => bytes,
+        few => return Ok(few),
+    };
     Err(D::Error::custom(Wrong::new(
         code::BYTES,
         format!("{} bytes, and a PDO has at most 8", bytes.0.len()),

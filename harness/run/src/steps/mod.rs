@@ -2,6 +2,7 @@
 
 mod bench;
 mod frames;
+mod mapping;
 mod modbus;
 mod nmt;
 mod pdo;
@@ -32,6 +33,7 @@ impl Tester<'_> {
             Step::StartSync(step) => self.start_sync(step),
             Step::StopSync => self.stop_sync(),
             Step::ExpectTpdo(step) => self.expect_tpdo(step),
+            Step::ExpectMapping(step) => self.expect_mapping(step),
             Step::SendRpdo(step) => self.send_rpdo(step),
             Step::SdoRead(step) => self.sdo_read(step),
             Step::SdoWrite(step) => self.sdo_write(step),
@@ -64,6 +66,7 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
         Step::ExpectSilence(step) => step.check.as_deref(),
         Step::ExpectState(step) => step.check.as_deref(),
         Step::ExpectTpdo(step) => step.check.as_deref(),
+        Step::ExpectMapping(step) => step.check.as_deref(),
         Step::SdoRead(step) => step.check.as_deref(),
         Step::SdoWrite(step) => step.check.as_deref(),
         Step::Modbus(step) => step.check.as_deref(),

@@ -135,6 +135,17 @@ impl Tester<'_> {
             (WriteExpectation::Abort(abort), Outcome::Refused(code)) => {
                 self.check_abort(object, abort, code)
             }
+            (WriteExpectation::Either(_), Outcome::Done(())) => {
+                self.check_remembered(object, &before)?;
+                self.check_holds(object, &bytes, "it was accepted", within)
+            }
+            (WriteExpectation::Either(abort), Outcome::Refused(code)) => {
+                self.check_abort(object, abort, code)?;
+                match before {
+                    Some(before) => self.check_holds(object, &before, "it was refused", within),
+                    None => Ok(()),
+                }
+            }
             (WriteExpectation::Abort(abort), Outcome::Done(())) => Err(Stop::mismatch(
                 format!("writing {object} is not refused"),
                 self.show_accepted(abort),
@@ -142,6 +153,36 @@ impl Tester<'_> {
                 Came::Answer,
             )),
         }
+    }
+
+    /// Whether an object holds what the answer to the write said.
+    fn check_holds(
+        &mut self,
+        object: Multiplexer,
+        expected: &[u8],
+        because: &str,
+        within: Duration,
+    ) -> Result<(), Stop> {
+        let held = match self.sdo_upload(object, within)? {
+            Outcome::Done(value) => value.of_size(Some(expected.len())).to_vec(),
+            Outcome::Refused(code) => {
+                return Err(Stop::mismatch(
+                    format!("reading {object} back is refused"),
+                    show_bytes(expected),
+                    show_abort(code),
+                    Came::Abort(code.0),
+                ));
+            }
+        };
+        if held == expected {
+            return Ok(());
+        }
+        Err(Stop::mismatch(
+            format!("{object} does not hold what the answer to the write said"),
+            format!("{}, for {because}", show_bytes(expected)),
+            show_bytes(&held),
+            Came::Other,
+        ))
     }
 
     fn check_abort(

@@ -5,13 +5,14 @@ use std::time::Duration;
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::Deserialize;
 
+use super::pdo::{CarriedFile, carried, pdo_name};
 use crate::code;
 use crate::forms::OneOrMany;
 use crate::model::{Decode, ExpectTpdo, Judge, NmtAddress, Sync, ValueType};
 use crate::problem::Wrong;
-use crate::read_with::{optional_time, pdo_number, ten};
+use crate::read_with::{optional_pdo_number, optional_time, ten};
 use crate::scalar::{
-    BytePatternText, Decimal, ObjectAddress, Scale, Text, Time, Tolerance, read_as_text,
+    BytePatternText, CanId, Decimal, ObjectAddress, Scale, Text, Time, Tolerance, read_as_text,
     whole_number,
 };
 
@@ -126,9 +127,12 @@ impl TryFrom<SyncFile> for Sync {
 #[schemars(rename = "ExpectTpdo")]
 pub(crate) struct ExpectTpdoFile {
     /// 1 to 4: its predefined identifier.
-    #[serde(deserialize_with = "pdo_number")]
+    #[serde(default, deserialize_with = "optional_pdo_number")]
     #[schemars(range(min = 1, max = 4))]
-    number: u8,
+    number: Option<u8>,
+    /// The identifier, in place of the number.
+    #[serde(default)]
+    identifier: Option<CanId>,
     /// How long after the last send (the last SYNC, say).
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
@@ -136,12 +140,19 @@ pub(crate) struct ExpectTpdoFile {
     /// What it must carry.
     #[serde(default)]
     data: Option<BytePatternText>,
+    /// What it must carry, value after value, and nothing more.
+    #[serde(default)]
+    carries: OneOrMany<CarriedFile>,
     /// What its bytes must mean.
     #[serde(default)]
     decode: OneOrMany<DecodeFile>,
     /// If given, `count` periods between this and the following ones are measured.
     #[serde(default)]
     period: Option<Tolerance>,
+    /// If given, so many SYNCs are between this and the next, and so on, `count` times.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 240))]
+    syncs: Option<u32>,
     /// How many periods; 10 where nothing is said.
     #[serde(default)]
     count: Option<u32>,
@@ -157,11 +168,26 @@ impl TryFrom<ExpectTpdoFile> for ExpectTpdo {
     type Error = Wrong;
 
     fn try_from(file: ExpectTpdoFile) -> Result<ExpectTpdo, Wrong> {
-        if file.period.is_none() && (file.count.is_some() || file.judge.is_some()) {
+        let counted = file.syncs.is_some() && file.count.is_some();
+        if file.period.is_none() && (file.judge.is_some() || file.count.is_some()) && !counted {
             return Err(Wrong::new(
                 code::KEYS_TOGETHER,
                 "`count` and `judge` are about a `period`, and there is none",
-                "needs `period`",
+                "needs `period`, or `syncs` and no `judge`",
+            ));
+        }
+        if file.syncs.is_some() && (file.period.is_some() || file.judge.is_some()) {
+            return Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                "SYNCs are counted exactly, and no period is measured",
+                "expected neither `period` nor `judge` beside `syncs`",
+            ));
+        }
+        if file.syncs.is_some_and(|syncs| !(1..=240).contains(&syncs)) {
+            return Err(Wrong::new(
+                code::NUMBER,
+                "a TPDO comes once in 1 to 240 SYNCs",
+                "expected 1 to 240",
             ));
         }
         if file.data.as_ref().is_some_and(|data| data.0.len() > 8) {
@@ -172,9 +198,10 @@ impl TryFrom<ExpectTpdoFile> for ExpectTpdo {
             ));
         }
         Ok(ExpectTpdo {
-            number: file.number,
+            pdo: pdo_name(file.number, file.identifier)?,
             within: file.within,
             data: file.data,
+            carries: carried(file.carries)?,
             decode: file
                 .decode
                 .0
@@ -182,6 +209,7 @@ impl TryFrom<ExpectTpdoFile> for ExpectTpdo {
                 .map(|one| one.lower(false))
                 .collect(),
             period: file.period,
+            syncs: file.syncs,
             count: file.count.unwrap_or_else(ten),
             judge: file.judge.unwrap_or_default(),
             check: file.check,

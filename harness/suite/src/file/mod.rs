@@ -5,6 +5,7 @@ mod can;
 mod case;
 mod device;
 mod modbus;
+mod pdo;
 mod sdo;
 mod short;
 mod stimulate;
@@ -16,12 +17,14 @@ pub(crate) use can::*;
 pub(crate) use case::*;
 pub(crate) use device::*;
 pub(crate) use modbus::*;
+pub(crate) use pdo::*;
 pub(crate) use sdo::*;
 pub(crate) use stimulate::*;
 
 crate::forms::schema_of!(
     crate::model::Sync: SyncFile,
     crate::model::ExpectTpdo: ExpectTpdoFile,
+    crate::model::SendRpdo: SendRpdoFile,
     crate::model::SdoRead: SdoReadFile,
     crate::model::SdoWrite: SdoWriteFile,
     crate::model::Modbus: ModbusFile,

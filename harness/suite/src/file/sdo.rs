@@ -284,7 +284,7 @@ pub(crate) struct SdoWriteFile {
     /// For a duration: what one count of the object is.
     #[serde(default)]
     unit: Option<TimeUnit>,
-    /// `ok` (the default) or `{abort: [...]}`.
+    /// `ok` (the default), `{abort: [...]}` or `{abort: [...], or: ok}`.
     #[serde(default)]
     expect: Option<Located<Either<WriteExpectFile>>>,
     /// How long after the request; else what the description promises.
@@ -320,6 +320,9 @@ pub(crate) struct Refusal {
     /// The one code that passes under `--strict`.
     #[serde(default)]
     strict: Option<u32>,
+    /// `ok`: it may be accepted as well; the object must then hold the value, and else what it held.
+    #[serde(default)]
+    or: Option<Accepted>,
 }
 
 impl TwoForms for WriteExpectFile {
@@ -350,9 +353,15 @@ impl TryFrom<SdoWriteFile> for SdoWrite {
             None => WriteExpectation::Ok,
             Some(expect) => match expect.value.0 {
                 WriteExpectFile::Ok => WriteExpectation::Ok,
-                WriteExpectFile::Refused(Refusal { abort, strict }) => refusal(abort, strict)
-                    .map(WriteExpectation::Abort)
-                    .map_err(|wrong| wrong.or_at(expect.at))?,
+                WriteExpectFile::Refused(Refusal { abort, strict, or }) => {
+                    let expectation = match or {
+                        None => WriteExpectation::Abort,
+                        Some(Accepted::Ok) => WriteExpectation::Either,
+                    };
+                    refusal(abort, strict)
+                        .map(expectation)
+                        .map_err(|wrong| wrong.or_at(expect.at))?
+                }
             },
         };
         Ok(SdoWrite {

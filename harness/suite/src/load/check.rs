@@ -96,6 +96,7 @@ fn can_fail(step: &Step) -> bool {
         | Step::ExpectBootUp(_)
         | Step::ExpectHeartbeat(_)
         | Step::ExpectTpdo(_)
+        | Step::ExpectMapping(_)
         | Step::ExpectBytes(_)
         | Step::SdoRead(_)
         | Step::SdoWrite(_)

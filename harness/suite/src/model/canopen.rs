@@ -5,10 +5,10 @@ use std::time::Duration;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Decode;
-use crate::file::{ExpectTpdoFile, SyncFile};
-use crate::read_with::{optional_node, optional_time, pdo_data, pdo_number, ten, time};
-use crate::scalar::{BytePatternText, Bytes, Time, Tolerance};
+use super::{Decode, ValueType};
+use crate::file::{ExpectTpdoFile, SendRpdoFile, SyncFile};
+use crate::read_with::{optional_node, optional_time, ten, time};
+use crate::scalar::{BytePatternText, Bytes, ObjectAddress, Time, Tolerance, Value};
 
 /// Sends an NMT command. Short form: the command alone.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -143,16 +143,20 @@ pub struct StartSync {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "ExpectTpdoFile")]
 pub struct ExpectTpdo {
-    /// 1 to 4: its predefined identifier.
-    pub number: u8,
+    /// Which.
+    pub pdo: PdoName,
     /// How long after the last send (the last SYNC, say).
     pub within: Option<Duration>,
     /// What it must carry.
     pub data: Option<BytePatternText>,
+    /// What it must carry, value after value, and nothing more; empty: nothing is said.
+    pub carries: Vec<Carried>,
     /// What its bytes must mean.
     pub decode: Vec<Decode>,
     /// If given, `count` periods between this and the following ones are measured.
     pub period: Option<Tolerance>,
+    /// If given, so many SYNCs are between this and the next, and so on, `count` times.
+    pub syncs: Option<u32>,
     /// How many periods.
     pub count: u32,
     /// What of the periods must keep the limit.
@@ -162,14 +166,42 @@ pub struct ExpectTpdo {
 }
 
 /// Sends a receive PDO.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "SendRpdoFile")]
+pub struct SendRpdo {
+    /// Which.
+    pub pdo: PdoName,
+    /// What it carries, at most 8 bytes; else `carries`.
+    pub data: Option<Bytes>,
+    /// What it carries, value after value.
+    pub carries: Vec<Carried>,
+}
+
+/// Which PDO.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PdoName {
+    /// 1 to 4: its predefined identifier.
+    Number(u8),
+    /// That with this identifier.
+    Identifier(u16),
+}
+
+/// A value in a PDO.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Carried {
+    /// Its type.
+    pub value_type: ValueType,
+    /// The value.
+    pub value: Value,
+}
+
+/// Expects that a PDO's mapping is right: what is mapped is in the dictionary, with this length, and fits a PDO.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct SendRpdo {
-    /// 1 to 4: its predefined identifier.
-    #[serde(deserialize_with = "pdo_number")]
-    #[schemars(range(min = 1, max = 4))]
-    pub number: u8,
-    /// What it carries, at most 8 bytes.
-    #[serde(deserialize_with = "pdo_data")]
-    pub data: Bytes,
+pub struct ExpectMapping {
+    /// The mapping parameter: `"1A00:00"`.
+    pub of: ObjectAddress,
+    /// The name of this check, for documented deviations.
+    #[serde(default)]
+    pub check: Option<String>,
 }

@@ -154,7 +154,7 @@ pub struct SdoWrite {
     pub value: Value,
     /// For a duration: what one count of the object is.
     pub unit: Option<Duration>,
-    /// `ok` (the default) or `{abort: [...]}`.
+    /// `ok` (the default), `{abort: [...]}` or `{abort: [...], or: ok}`.
     pub expect: WriteExpectation,
     /// How long after the request; else what the description promises.
     pub within: Option<Duration>,
@@ -170,4 +170,7 @@ pub enum WriteExpectation {
     Ok,
     /// It is refused.
     Abort(AbortExpectation),
+    /// It is accepted, and the object holds the value; or it is refused, and the object holds what it held:
+    /// `expect: {abort: 0x06090030, or: ok}`
+    Either(AbortExpectation),
 }

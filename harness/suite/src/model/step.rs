@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    Expect, ExpectBootUp, ExpectBytes, ExpectHeartbeat, ExpectSilence, ExpectState, ExpectTpdo,
-    Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync,
-    Stimulate, Sync,
+    Expect, ExpectBootUp, ExpectBytes, ExpectHeartbeat, ExpectMapping, ExpectSilence, ExpectState,
+    ExpectTpdo, Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo,
+    StartSync, Stimulate, Sync,
 };
 use crate::forms::{either, either_schema};
 use crate::read_with::{bit_rate, read_later, times};
@@ -64,6 +64,8 @@ pub enum Step {
     StopSync,
     /// `expect-tpdo: {number: 1, within: 100 ms, data: "D7C70000????????"}`.
     ExpectTpdo(ExpectTpdo),
+    /// `expect-mapping: {of: "1A00:00"}`: what is mapped there is in the dictionary, with this length.
+    ExpectMapping(ExpectMapping),
     /// `send-rpdo: {number: 1, data: "0F00"}`.
     SendRpdo(SendRpdo),
     /// `sdo-read: {object: "1000:00", as: u32, expect: 0x192}`.

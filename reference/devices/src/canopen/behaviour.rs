@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::BlockTransfer;
+use super::{BlockTransfer, PdoBehaviour};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -22,6 +22,8 @@ pub struct Behaviour {
     pub heartbeat_on_write: bool,
     /// SDO block transfer.
     pub block: BlockTransfer,
+    /// PDOs.
+    pub pdo: PdoBehaviour,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -196,6 +198,7 @@ impl Default for Behaviour {
             tpdo_with_first_sync: false,
             heartbeat_on_write: false,
             block: BlockTransfer::default(),
+            pdo: PdoBehaviour::default(),
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,

@@ -62,6 +62,12 @@ pub(super) const PDO_TOO_SHORT: DeviceError = DeviceError {
     register_bit: 0,
 };
 
+/// A PDO with more bytes than its mapping has.
+pub(super) const PDO_TOO_LONG: DeviceError = DeviceError {
+    code: 0x8220,
+    register_bit: 0,
+};
+
 impl Slave {
     /// Reports an error that has no end.
     pub(super) fn report(&mut self, now: Instant, error: DeviceError) {

@@ -17,6 +17,8 @@ mod memory;
 mod nmt;
 mod objects;
 mod pdo;
+mod pdo_behaviour;
+pub(crate) mod pdo_faults;
 mod pdo_rules;
 mod profile;
 mod queue;
@@ -37,6 +39,7 @@ pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, Sta
 pub(crate) use emergency::HARDWARE;
 use nmt::State;
 pub(crate) use objects::Objects;
+pub use pdo_behaviour::PdoBehaviour;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
 pub use sdo::{BlockTransfer, Recovery};
 pub(crate) use slave::{Factory, Slave};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fieldproof_dictionary::{Dictionary, Entry};
+use fieldproof_dictionary::{Access, Dictionary, Entry};
 
 use super::emergency::ERROR_HISTORY;
 use super::{Abort, Address};
@@ -13,6 +13,10 @@ pub(crate) struct Object {
     pub(crate) readable: bool,
     pub(crate) writable: bool,
     pub(crate) mappable: bool,
+    /// A PDO that is sent may carry it.
+    pub(crate) sendable: bool,
+    /// A PDO that is received may carry it.
+    pub(crate) receivable: bool,
     /// The number of bytes, where the type fixes it.
     size: Option<usize>,
     /// The number of bits, where the type fixes it.
@@ -29,6 +33,8 @@ impl Object {
             readable: entry.access.readable(),
             writable: entry.access.writable(),
             mappable: entry.pdo_mapping,
+            sendable: entry.access.readable() && entry.access != Access::ReadWriteOnWrite,
+            receivable: entry.access.writable() && entry.access != Access::ReadWriteOnRead,
             size: entry.data_type.bytes(),
             bits: entry.data_type.bits(),
             signed: entry.data_type.is_signed(),

@@ -22,6 +22,9 @@ pub(super) const INVALID: u32 = 1 << 31;
 /// Bit 30: a remote frame does not fetch it.
 pub(super) const NO_REMOTE: u32 = 1 << 30;
 
+/// Bit 29: the identifier has 29 bits.
+pub(super) const EXTENDED: u32 = 1 << 29;
+
 /// A remote frame fetches what the last SYNC found.
 pub(super) const SAMPLED_BY_SYNC: u8 = 252;
 /// A remote frame fetches what there is.
@@ -59,9 +62,18 @@ impl Communication {
         let cob_id = number(1)?;
         let [identifier_low, identifier_high, ..] = cob_id.to_le_bytes();
         Some(Communication {
-            valid: cob_id & INVALID == 0 || (behaviour.invalid_tpdo_sent && is_transmit(index)),
+            valid: cob_id & INVALID == 0
+                || if is_transmit(index) {
+                    behaviour.invalid_tpdo_sent
+                } else {
+                    !behaviour.pdo.invalid_rpdo_passed_over
+                },
             remote: cob_id & NO_REMOTE == 0 || behaviour.remote_bit_ignored,
-            identifier: u16::from_le_bytes([identifier_low, identifier_high]) & 0x7FF,
+            identifier: if behaviour.pdo.identifier_used {
+                u16::from_le_bytes([identifier_low, identifier_high]) & 0x7FF
+            } else {
+                predefined(index) | u16::from(identifier_low & 0x7F)
+            },
             kind: number(2)?.to_le_bytes()[0],
             inhibit: if behaviour.inhibit_time_kept {
                 Duration::from_micros(u64::from(number(3).unwrap_or(0)) * 100)
@@ -77,6 +89,12 @@ impl Communication {
     pub(super) fn event_driven(&self) -> bool {
         self.kind >= EVENT_DRIVEN
     }
+}
+
+/// The identifier that the PDO with the communication parameter at `index` has for node 0, by its number.
+const fn predefined(index: u16) -> u16 {
+    let first = if is_transmit(index) { 0x180 } else { 0x200 };
+    first + (index & 3) * 0x100
 }
 
 /// What a mapping entry says.
@@ -159,6 +177,17 @@ pub(super) struct Rpdo {
     deadline: Option<Instant>,
 }
 
+impl Rpdo {
+    /// Whether what arrives does not wait for SYNC.
+    fn takes_effect_at_once(&self, behaviour: &Behaviour) -> bool {
+        match self.communication.kind {
+            EVENT_DRIVEN.. => behaviour.pdo.event_rpdo_at_once,
+            0 if !behaviour.pdo.acyclic_rpdo_waits => true,
+            _ => !behaviour.rpdo_waits_for_sync,
+        }
+    }
+}
+
 /// The RPDOs that the dictionary describes.
 pub(super) fn rpdos(objects: &Objects, behaviour: &Behaviour) -> Vec<Rpdo> {
     let rpdo = |number| {
@@ -191,10 +220,17 @@ impl Slave {
             return;
         };
         let mapped: u32 = rpdo.fields.iter().map(|field| field.bits).sum();
-        if frame.len() < mapped.div_ceil(8) as usize {
-            self.report(now, super::emergency::PDO_TOO_SHORT);
+        let length = mapped.div_ceil(8) as usize;
+        if frame.len() < length && self.behaviour.pdo.short_passed_over {
+            if self.behaviour.pdo.short_reported {
+                self.report(now, super::emergency::PDO_TOO_SHORT);
+            }
             return;
         }
+        if frame.len() > length && !self.behaviour.pdo.long_taken {
+            return;
+        }
+        let reported = frame.len() > length && self.behaviour.pdo.long_reported;
         let mut data = [0; 8];
         data.iter_mut()
             .zip(frame.bytes())
@@ -203,11 +239,14 @@ impl Slave {
         if self.profile.complete {
             rpdo.deadline = (!timer.is_zero()).then(|| now + timer);
         }
-        if rpdo.communication.event_driven() || !self.behaviour.rpdo_waits_for_sync {
+        if rpdo.takes_effect_at_once(&self.behaviour) {
             let fields = rpdo.fields.clone();
             self.take_pdo(now, &fields, data, application);
-        } else {
+        } else if self.behaviour.pdo.last_rpdo_counts || rpdo.latched.is_none() {
             rpdo.latched = Some(data);
+        }
+        if reported {
+            self.report(now, super::emergency::PDO_TOO_LONG);
         }
     }
 
@@ -217,7 +256,9 @@ impl Slave {
             let Some(rpdo) = self.rpdos.get_mut(number) else {
                 return;
             };
-            if let Some(data) = rpdo.latched.take() {
+            if let Some(data) = rpdo.latched.take()
+                && self.behaviour.pdo.rpdo_actuated
+            {
                 let fields = rpdo.fields.clone();
                 self.take_pdo(now, &fields, data, application);
             }
@@ -265,14 +306,32 @@ impl Slave {
             count += 1;
         }
         for _ in 0..count {
-            self.report(now, super::emergency::RPDO_TIMEOUT);
+            if self.behaviour.pdo.deadline_noticed {
+                self.report(now, super::emergency::RPDO_TIMEOUT);
+            }
         }
     }
 
-    /// PDOs are not permitted any more: none is late.
+    /// PDOs are permitted from now on.
+    pub(super) fn start_rpdos(&mut self, now: Instant) {
+        if self.behaviour.pdo.deadline_from_first || !self.profile.complete {
+            return;
+        }
+        for rpdo in self
+            .rpdos
+            .iter_mut()
+            .filter(|rpdo| rpdo.communication.valid)
+        {
+            let timer = rpdo.communication.event_timer;
+            rpdo.deadline = (!timer.is_zero()).then(|| now + timer);
+        }
+    }
+
+    /// PDOs are not permitted any more: none is late, and what waits for SYNC is forgotten.
     pub(super) fn stop_rpdos(&mut self) {
         for rpdo in &mut self.rpdos {
             rpdo.deadline = None;
+            rpdo.latched = None;
         }
     }
 }

@@ -14,6 +14,7 @@ use super::memory::Memory;
 use super::nmt::Command;
 use super::objects::Objects;
 use super::pdo::{self, Rpdo};
+use super::pdo_rules::Parameter;
 use super::queue::{Queue, Service, identifier};
 use super::sdo::Server;
 use super::sync::Sync;
@@ -136,11 +137,18 @@ impl Slave {
         frame: &Frame,
         application: &mut dyn Application,
     ) {
-        let Id::Standard(id) = frame.id() else { return };
         if !self.powered || self.boot_at.is_some() {
             return;
         }
-        let (raw, node) = (id.raw(), u16::from(self.node));
+        let (raw, node) = match frame.id() {
+            Id::Standard(id) => (id.raw(), u16::from(self.node)),
+            Id::Extended(id) if !self.behaviour.pdo.extended_frames_passed_over => {
+                let [low, high, ..] = (id.raw() & 0x7FF).to_le_bytes();
+                let identifier = u16::from_le_bytes([low, high]);
+                return self.receive_pdo(now, identifier, frame, application);
+            }
+            Id::Extended(_) => return,
+        };
         if raw == lss::REQUEST {
             self.receive_lss(now, frame);
         } else if self.state == State::Initialising {
@@ -277,6 +285,7 @@ impl Slave {
             .retain(|service| state.permits(service, &self.behaviour));
         if state.permits(Service::Pdo, &self.behaviour) {
             self.start_tpdos(now);
+            self.start_rpdos(now);
         } else {
             self.stop_rpdos();
         }
@@ -296,9 +305,27 @@ impl Slave {
     /// The communication part of it, with the node-ID that was configured.
     pub(super) fn reset_communication(&mut self, now: Instant) {
         self.node = self.pending_node;
+        let kept = self.kept_pdo_parameters();
         self.objects
             .load(COMMUNICATION, self.node, &self.memory.values);
+        for (address, value) in kept {
+            self.objects.set(address, &value);
+        }
         self.initialise(now);
+    }
+
+    /// The PDO parameters that reset communication leaves as they are: none in a right device.
+    fn kept_pdo_parameters(&self) -> Vec<(Address, Vec<u8>)> {
+        if self.behaviour.pdo.reset_restores {
+            return Vec::new();
+        }
+        let parameters = self
+            .objects
+            .iter()
+            .filter(|(address, _)| Parameter::of(address.index()).is_some());
+        parameters
+            .map(|(address, object)| (address, object.value().to_vec()))
+            .collect()
     }
 
     fn initialise(&mut self, now: Instant) {

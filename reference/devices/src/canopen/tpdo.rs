@@ -8,7 +8,7 @@ use super::pdo::{
     Communication, Field, MOST_PDOS, SAMPLED_BY_SYNC, TPDO_COMMUNICATION, TPDO_MAPPING, fields,
 };
 use super::queue::{Service, identifier};
-use super::{Behaviour, Slave, TransmitEvent};
+use super::{Behaviour, PdoBehaviour, Slave, TransmitEvent};
 
 /// What a PDO carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -25,6 +25,8 @@ pub(super) struct Tpdo {
     fields: Vec<Field>,
     /// What it carried last, or when it was started.
     sampled: Payload,
+    /// What there was when it was sent last.
+    carried: Payload,
     /// It is to be sent: as soon as the inhibit time allows, or with the next SYNC.
     event: bool,
     /// SYNCs since it was last sent.
@@ -33,6 +35,10 @@ pub(super) struct Tpdo {
     waits: bool,
     /// Its numbers leave with the most significant byte first.
     big_endian: bool,
+    /// It has 8 bytes, whatever is mapped.
+    always_eight: bool,
+    /// The last mapped object has the lowest bits.
+    turned: bool,
     /// It was due with the SYNC before.
     owed: bool,
     last: Option<Instant>,
@@ -47,10 +53,13 @@ impl Tpdo {
             communication: Communication::read(objects, index, behaviour)?,
             fields: fields(objects, TPDO_MAPPING + number),
             sampled: Payload::default(),
+            carried: Payload::default(),
             event: false,
             syncs: 0,
             waits: false,
             big_endian: behaviour.tpdo_big_endian,
+            always_eight: !behaviour.pdo.tpdo_length_kept,
+            turned: !behaviour.pdo.mapping_order_kept,
             owed: false,
             last: None,
             timer: None,
@@ -60,7 +69,7 @@ impl Tpdo {
     fn payload(&self, objects: &Objects) -> Payload {
         let mut data = 0;
         let mut used = 0;
-        for field in &self.fields {
+        for field in self.ordered() {
             if used + field.bits > 64 {
                 break;
             }
@@ -68,9 +77,26 @@ impl Tpdo {
             used += field.bits;
         }
         Payload {
-            len: used.div_ceil(8) as usize,
+            len: if self.always_eight {
+                8
+            } else {
+                used.div_ceil(8) as usize
+            },
             bytes: data.to_le_bytes(),
         }
+    }
+
+    /// What is mapped, from the lowest bits on.
+    fn ordered(&self) -> impl Iterator<Item = &Field> {
+        let last = self.fields.len().wrapping_sub(1);
+        let place = move |number| {
+            if self.turned {
+                last.wrapping_sub(number)
+            } else {
+                number
+            }
+        };
+        (0..self.fields.len()).filter_map(move |number| self.fields.get(place(number)))
     }
 
     /// What a field carries, in the low bits.
@@ -92,15 +118,18 @@ impl Tpdo {
     }
 
     /// When it leaves next, if nothing happens before.
-    fn due(&self) -> Option<Instant> {
-        if !self.communication.valid || !self.communication.event_driven() {
+    fn due(&self, pdo: &PdoBehaviour) -> Option<Instant> {
+        let asynchronous = self.communication.event_driven();
+        let at_once = asynchronous || (self.communication.kind == 0 && !pdo.acyclic_waits_for_sync);
+        let timed = pdo.timer_runs && (asynchronous || !pdo.timer_event_driven_only);
+        if !self.communication.valid {
             return None;
         }
-        let event = self.event.then(|| {
+        let event = (self.event && at_once).then(|| {
             self.last
                 .map_or(Instant::START, |last| last + self.communication.inhibit)
         });
-        let timer = self.timer.map(|timer| match self.last {
+        let timer = self.timer.filter(|_| timed).map(|timer| match self.last {
             Some(last) => timer.max(last + self.communication.inhibit),
             None => timer,
         });
@@ -148,8 +177,11 @@ impl Slave {
             return;
         };
         tpdo.sampled = tpdo.payload(&self.objects);
+        tpdo.carried = tpdo.sampled;
         tpdo.event = on_start && tpdo.communication.event_driven();
         let cyclic = (1..=240).contains(&tpdo.communication.kind);
+        let unasked =
+            cyclic && tpdo.communication.valid && !self.behaviour.pdo.synchronous_waits_for_first;
         tpdo.syncs = if cyclic && with_first {
             tpdo.communication.kind - 1
         } else {
@@ -159,6 +191,10 @@ impl Slave {
         tpdo.owed = false;
         let period = tpdo.communication.event_timer;
         tpdo.timer = (!period.is_zero()).then(|| now + period);
+        let place = self.tpdos.iter().position(|tpdo| tpdo.index == index);
+        if let Some(number) = place.filter(|_| unasked) {
+            self.transmit(number, now);
+        }
     }
 
     /// Values may have changed.
@@ -169,7 +205,10 @@ impl Slave {
         let on_change = self.profile.transmit_event == TransmitEvent::Change;
         for tpdo in &mut self.tpdos {
             let communication = &tpdo.communication;
-            let watched = communication.kind == 0 || (communication.event_driven() && on_change);
+            let watched = communication.kind == 0
+                || (communication.event_driven()
+                    && on_change
+                    && self.behaviour.pdo.changes_noticed);
             if communication.valid && watched {
                 tpdo.event |= tpdo.payload(&self.objects) != tpdo.sampled;
             }
@@ -188,18 +227,30 @@ impl Slave {
             if kind == SAMPLED_BY_SYNC {
                 tpdo.sampled = tpdo.payload(&self.objects);
             }
-            if !tpdo.communication.valid || kind > 240 {
+            if !tpdo.communication.valid {
                 continue;
             }
+            if kind > 240 {
+                if self.behaviour.pdo.sent_with_sync(kind) {
+                    let at = now + self.turnaround();
+                    self.transmit(number, at);
+                }
+                continue;
+            }
+            let ratio = if self.behaviour.pdo.long_ratios_counted {
+                kind
+            } else {
+                kind & 0x7F
+            };
             tpdo.waits &= counter.is_some() && counter != Some(tpdo.communication.start);
             if tpdo.waits {
                 continue;
             }
             tpdo.syncs = tpdo.syncs.saturating_add(1);
             let due = if kind == 0 {
-                tpdo.event
+                tpdo.event || !self.behaviour.pdo.acyclic_needs_event
             } else {
-                tpdo.syncs >= kind.saturating_add(surplus)
+                tpdo.syncs >= ratio.saturating_add(surplus)
             };
             if due {
                 tpdo.syncs = 0;
@@ -213,6 +264,9 @@ impl Slave {
             if leaves {
                 let at = now + self.turnaround();
                 self.transmit(number, at);
+                if !self.behaviour.pdo.every_due_sent {
+                    return;
+                }
             }
         }
     }
@@ -220,6 +274,7 @@ impl Slave {
     /// A remote frame with the identifier of a TPDO fetches it.
     pub(super) fn fetch_tpdo(&mut self, now: Instant, identifier: u16) {
         if !self.behaviour.remote_frames_answered
+            || !self.behaviour.pdo.remote_answered
             || !self.state.permits(Service::Pdo, &self.behaviour)
         {
             return;
@@ -240,8 +295,8 @@ impl Slave {
             return;
         }
         for number in 0..self.tpdos.len() {
-            let due = self.tpdos.get(number).and_then(Tpdo::due);
-            if due.is_some_and(|due| due <= now) {
+            let due = self.tpdo_due(number);
+            if due.is_some_and(|due| due <= now) && !self.loses_event(number, now) {
                 self.transmit(number, now);
             }
         }
@@ -252,7 +307,27 @@ impl Slave {
         if !self.state.permits(Service::Pdo, &self.behaviour) {
             return None;
         }
-        self.tpdos.iter().filter_map(Tpdo::due).min()
+        let due = |tpdo: &Tpdo| tpdo.due(&self.behaviour.pdo);
+        self.tpdos.iter().filter_map(due).min()
+    }
+
+    fn tpdo_due(&self, number: usize) -> Option<Instant> {
+        self.tpdos.get(number)?.due(&self.behaviour.pdo)
+    }
+
+    /// Whether an event that has waited for the inhibit time is forgotten, as no right device does.
+    fn loses_event(&mut self, number: usize, now: Instant) -> bool {
+        let Some(tpdo) = self.tpdos.get_mut(number) else {
+            return true;
+        };
+        let inhibit = tpdo.communication.inhibit;
+        let waited = tpdo.event && tpdo.last.is_some_and(|last| last + inhibit == now);
+        if self.behaviour.pdo.inhibited_event_kept || inhibit.is_zero() || !waited {
+            return false;
+        }
+        tpdo.event = false;
+        tpdo.sampled = tpdo.payload(&self.objects);
+        true
     }
 
     fn transmit(&mut self, number: usize, at: Instant) {
@@ -261,11 +336,10 @@ impl Slave {
         };
         let latched =
             tpdo.communication.kind == SAMPLED_BY_SYNC && self.behaviour.remote_sample_kept;
-        let payload = if latched {
-            tpdo.sampled
-        } else {
-            tpdo.payload(&self.objects)
-        };
+        let fresh = tpdo.payload(&self.objects);
+        let stale = !self.behaviour.pdo.tpdo_fresh;
+        let payload = if latched { tpdo.sampled } else { fresh };
+        let before = std::mem::replace(&mut tpdo.carried, fresh);
         let period = tpdo.communication.event_timer;
         // A timer that was due keeps its pace; one that was not starts again.
         let from = tpdo.timer.filter(|timer| *timer <= at).unwrap_or(at);
@@ -274,6 +348,7 @@ impl Slave {
         tpdo.event = false;
         tpdo.last = Some(at);
         let identifier = identifier(tpdo.communication.identifier);
+        let payload = if stale { before } else { payload };
         let bytes = payload.bytes.get(..payload.len).unwrap_or(&payload.bytes);
         if let Some(frame) = Frame::data(identifier, bytes) {
             self.queue.push(at, Service::Pdo, frame);

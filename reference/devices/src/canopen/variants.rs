@@ -41,3 +41,19 @@ pub(crate) const SLOW: Variant = Variant {
     words: "takes 10 to 15 ms for every answer",
     apply: |behaviour| behaviour.canopen.response_us = 10_000..15_000,
 };
+
+pub(crate) const LONG_PDO_REPORTED: Variant = Variant {
+    name: "long-pdo-reported",
+    words: "takes the first bytes of an RPDO that is too long, and reports it (8220h): CiA 301 leaves that open",
+    apply: |behaviour| behaviour.canopen.pdo.long_reported = true,
+};
+
+pub(crate) const OTHER_PDO_ABORTS: Variant = Variant {
+    name: "other-pdo-aborts",
+    words: "refuses PDO parameters with other codes that fit: 06010000h and 06020000h",
+    apply: |behaviour| {
+        behaviour.canopen.pdo.abort_not_now = 0x0601_0000;
+        behaviour.canopen.pdo.abort_not_mappable = 0x0602_0000;
+        behaviour.canopen.pdo.abort_too_long = 0x0604_0041;
+    },
+};

@@ -6,7 +6,7 @@ use super::emergency::ERROR_HISTORY;
 use super::error_control::{GUARD_TIME, LIFE_TIME_FACTOR, PRODUCER_TIME};
 use super::memory;
 use super::pdo;
-use super::pdo_rules::{self, Parameter};
+use super::pdo_rules::{self, Parameter, Rules};
 use super::sync;
 use super::{Abort, Address, Answer, Application, Slave};
 use super::{cob_id, consumers, emergency, time};
@@ -34,8 +34,13 @@ impl Slave {
         if let Some(twin) = self.twin(address).and_then(|twin| self.objects.get(twin)) {
             twin.takes(value)?;
         }
-        if !self.permitted(address, value)? {
-            return Ok(true);
+        match self.permitted(address, value) {
+            Ok(true) => {}
+            Ok(false) => return Ok(true),
+            Err(abort) => {
+                self.spoil_refused(address);
+                return Err(abort);
+            }
         }
         match application.writing(address, value) {
             Answer::Now => {}
@@ -54,6 +59,15 @@ impl Slave {
         Ok(true)
     }
 
+    /// What was refused is cleared by a device that has written before it checked.
+    fn spoil_refused(&mut self, address: Address) {
+        let entry =
+            address.sub() != 0 && Parameter::of(address.index()) == Some(Parameter::Mapping);
+        if entry && !self.behaviour.pdo.refused_entry_kept {
+            self.objects.set_number(address, 0);
+        }
+    }
+
     fn twin(&self, address: Address) -> Option<Address> {
         let twins = self.profile.twins.iter();
         twins.fold(None, |found, (first, second)| match address {
@@ -69,14 +83,14 @@ impl Slave {
         let number = bytes.fold(0, |number, byte| number << 8 | u32::from(*byte));
         let index = address.index();
         if let Some(parameter) = Parameter::of(index) {
-            pdo_rules::check(
-                &self.objects,
-                &self.profile,
-                &self.behaviour,
-                parameter,
-                address,
-                value,
-            )?;
+            let rules = Rules {
+                objects: &self.objects,
+                profile: &self.profile,
+                behaviour: &self.behaviour,
+            };
+            if !rules.check(parameter, address, value)? {
+                return Ok(false);
+            }
         } else if address == sync::COB_ID {
             sync::check(
                 &self.profile,
@@ -147,7 +161,10 @@ impl Slave {
             .values
             .retain(|saved, _| !group.contains(&saved.index()));
         if address.index() == STORE {
-            let differing = self.objects.differing(&group, self.node);
+            let mut differing = self.objects.differing(&group, self.node);
+            let mapping =
+                |address: &Address| Parameter::of(address.index()) == Some(Parameter::Mapping);
+            differing.retain(|address, _| self.behaviour.pdo.mapping_stored || !mapping(address));
             self.memory.values.extend(differing);
         }
         Ok(())

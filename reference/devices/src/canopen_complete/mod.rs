@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, faults, service_faults,
+    block_faults, faults, pdo_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -47,13 +47,17 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_BIT_TIMING_MISSING,
 ];
 const FAULTS: [Fault;
-    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
-    all_of(&[
-        faults::COMMON,
-        service_faults::ALL,
-        OWN_FAULTS,
-        block_faults::BLOCK,
-    ]);
+    faults::COMMON.len()
+        + service_faults::ALL.len()
+        + OWN_FAULTS.len()
+        + block_faults::BLOCK.len()
+        + pdo_faults::ALL.len()] = all_of(&[
+    faults::COMMON,
+    service_faults::ALL,
+    OWN_FAULTS,
+    block_faults::BLOCK,
+    pdo_faults::ALL,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -70,6 +74,8 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
         canopen::variants::SMALL_BLOCKS,
+        canopen::variants::LONG_PDO_REPORTED,
+        canopen::variants::OTHER_PDO_ABORTS,
     ],
     build,
 };
