@@ -265,7 +265,7 @@ pub const fn feature_name(feature: Feature) -> &'static str {
         Feature::SdoSegmented => "sdo-segmented",
         Feature::SdoBlock => "sdo-block",
         Feature::Tpdo => "tpdo",
-        Feature::AcyclicTpdo => "acyclic-tpdo",
+        Feature::AcyclicPdo => "acyclic-pdo",
         Feature::EventTpdo => "event-tpdo",
         Feature::Rpdo => "rpdo",
         Feature::DynamicMapping => "dynamic-mapping",

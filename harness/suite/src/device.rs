@@ -161,8 +161,8 @@ pub enum Feature {
     SdoBlock,
     /// Sends PDOs.
     Tpdo,
-    /// Sends PDOs of transmission type 0: with the SYNC after an event.
-    AcyclicTpdo,
+    /// Has transmission type 0: a TPDO is sent with the SYNC after an event.
+    AcyclicPdo,
     /// Sends an event-driven PDO when what it carries changes.
     EventTpdo,
     /// Receives PDOs.

@@ -58,7 +58,7 @@ impl TryFrom<SendRpdoFile> for SendRpdo {
     type Error = Wrong;
 
     fn try_from(file: SendRpdoFile) -> Result<SendRpdo, Wrong> {
-        if file.data.is_some() == !file.carries.0.is_empty() {
+        if file.data.is_some() != file.carries.0.is_empty() {
             return Err(Wrong::new(
                 code::KEYS_TOGETHER,
                 "a PDO carries either bytes or values",

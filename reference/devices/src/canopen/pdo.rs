@@ -154,13 +154,17 @@ fn part(data: u64, from: u32, bits: u32) -> Option<u64> {
 }
 
 /// The objects mapped at `index`.
-pub(super) fn fields(objects: &Objects, index: u16) -> Vec<Field> {
+pub(super) fn fields(objects: &Objects, index: u16, behaviour: &Behaviour) -> Vec<Field> {
     let field = |entry: MappingEntry| {
         let slot = objects.find(entry.address).ok();
         (slot.is_some() || dummy(entry.address).is_some()).then(|| Field {
             slot,
             address: entry.address,
-            bits: u32::from(entry.bits),
+            bits: if behaviour.pdo.bits_packed {
+                u32::from(entry.bits)
+            } else {
+                u32::from(entry.bits).next_multiple_of(8)
+            },
         })
     };
     entries(objects, index).filter_map(field).collect()
@@ -193,7 +197,7 @@ pub(super) fn rpdos(objects: &Objects, behaviour: &Behaviour) -> Vec<Rpdo> {
     let rpdo = |number| {
         Some(Rpdo {
             communication: Communication::read(objects, RPDO_COMMUNICATION + number, behaviour)?,
-            fields: fields(objects, RPDO_MAPPING + number),
+            fields: fields(objects, RPDO_MAPPING + number, behaviour),
             latched: None,
             deadline: None,
         })
@@ -214,7 +218,8 @@ impl Slave {
             return;
         }
         let found = self.rpdos.iter().position(|rpdo| {
-            rpdo.communication.valid && rpdo.communication.identifier == identifier
+            rpdo.communication.valid
+                && (rpdo.communication.identifier ^ identifier) & self.behaviour.pdo.compared() == 0
         });
         let Some(rpdo) = found.and_then(|number| self.rpdos.get_mut(number)) else {
             return;

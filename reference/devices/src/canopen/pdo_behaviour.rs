@@ -105,11 +105,30 @@ pub struct PdoBehaviour {
     pub mapping_order_kept: bool,
     /// A TPDO has the length of its mapping, and not 8 bytes always.
     pub tpdo_length_kept: bool,
+    /// An RPDO is taken only with just its identifier.
+    pub identifiers_compared: bool,
+    /// What is mapped by default has the length of its object.
+    pub default_mapping_right: bool,
+    /// Sub-index 0 of a communication parameter is the highest that there is.
+    pub sub_indices_right: bool,
+    /// A start value is looked at only while SYNC has a counter.
+    pub start_value_needs_counter: bool,
+    /// A BOOLEAN takes one bit of a PDO.
+    pub bits_packed: bool,
     /// A TPDO carries what is there when it is sent, not when it was sent last.
     pub tpdo_fresh: bool,
 }
 
 impl PdoBehaviour {
+    /// The bits of an identifier that are compared with an RPDO's.
+    pub(super) const fn compared(&self) -> u16 {
+        if self.identifiers_compared {
+            0x7FF
+        } else {
+            0x7FC
+        }
+    }
+
     /// Whether SYNC sends a TPDO of this type above 240: no such type, in a right device.
     pub(super) const fn sent_with_sync(&self, kind: u8) -> bool {
         match kind {
@@ -171,6 +190,11 @@ impl Default for PdoBehaviour {
             every_due_sent: true,
             mapping_order_kept: true,
             tpdo_length_kept: true,
+            identifiers_compared: true,
+            default_mapping_right: true,
+            sub_indices_right: true,
+            start_value_needs_counter: true,
+            bits_packed: true,
             tpdo_fresh: true,
         }
     }

@@ -362,6 +362,46 @@ pub(crate) const TPDO_STALE: Fault = Fault {
     apply: |behaviour| behaviour.canopen.pdo.tpdo_fresh = false,
 };
 
+pub(crate) const IDENTIFIERS_NEARLY_COMPARED: Fault = Fault {
+    name: "identifier-nearly-compared",
+    breaks: "CiA 301: PDO COB-ID, bits 0 to 10",
+    words: "takes an RPDO whose identifier differs from its own in the lowest two bits",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo.identifiers_compared = false,
+};
+
+pub(crate) const DEFAULT_MAPPING_WRONG: Fault = Fault {
+    name: "default-mapping-wrong",
+    breaks: "CiA 301: PDO mapping parameter, length of the object",
+    words: "maps the first object of TPDO1 and RPDO1 by default with twice its length",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo.default_mapping_right = false,
+};
+
+pub(crate) const PDO_SUB_INDICES_WRONG: Fault = Fault {
+    name: "pdo-sub-index-count-wrong",
+    breaks: "CiA 301: PDO communication parameter, sub-index 0",
+    words: "gives 32 for the highest sub-index of a PDO communication parameter, as if it were a length in bits",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo.sub_indices_right = false,
+};
+
+pub(crate) const START_VALUE_WITHOUT_COUNTER: Fault = Fault {
+    name: "start-value-without-counter",
+    breaks: "CiA 301: PDO communication parameter, SYNC start value without a counter",
+    words: "waits for the SYNC with its start value though SYNC has no counter",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo.start_value_needs_counter = false,
+};
+
+pub(crate) const BITS_NOT_PACKED: Fault = Fault {
+    name: "bits-not-packed",
+    breaks: "CiA 301: PDO mapping, transfer syntax of bit sequences",
+    words: "gives a BOOLEAN in a PDO a whole byte",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.pdo.bits_packed = false,
+};
+
 /// All of them.
 pub(crate) const ALL: &[Fault] = &[
     IDENTIFIER_CHANGED_WHILE_VALID,
@@ -409,4 +449,9 @@ pub(crate) const ALL: &[Fault] = &[
     MAPPING_ORDER_TURNED,
     TPDO_ALWAYS_EIGHT,
     TPDO_STALE,
+    IDENTIFIERS_NEARLY_COMPARED,
+    DEFAULT_MAPPING_WRONG,
+    PDO_SUB_INDICES_WRONG,
+    START_VALUE_WITHOUT_COUNTER,
+    BITS_NOT_PACKED,
 ];

@@ -328,8 +328,26 @@ impl Slave {
             .collect()
     }
 
+    /// What a device that does not keep to its EDS has in the place of its defaults.
+    fn spoil_pdo_parameters(&mut self) {
+        if !self.behaviour.pdo.default_mapping_right {
+            for address in [Address::new(0x1600, 1), Address::new(0x1A00, 1)] {
+                let entry = self.objects.number(address).unwrap_or(0);
+                self.objects
+                    .set_number(address, i64::from(entry + (entry & 0x3F)));
+            }
+        }
+        if !self.behaviour.pdo.sub_indices_right {
+            let counts = (0x1400..0x1408).chain(0x1800..0x1808);
+            for address in counts.map(|index| Address::new(index, 0)) {
+                self.objects.set_number(address, 32);
+            }
+        }
+    }
+
     fn initialise(&mut self, now: Instant) {
         self.show_configuration();
+        self.spoil_pdo_parameters();
         for (sub, number) in (1..).zip(self.behaviour.identity.into_iter().flatten()) {
             let address = Address::new(IDENTITY, sub);
             self.objects.set_number(address, i64::from(number));

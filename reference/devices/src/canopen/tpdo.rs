@@ -51,7 +51,7 @@ impl Tpdo {
         Some(Tpdo {
             index,
             communication: Communication::read(objects, index, behaviour)?,
-            fields: fields(objects, TPDO_MAPPING + number),
+            fields: fields(objects, TPDO_MAPPING + number, behaviour),
             sampled: Payload::default(),
             carried: Payload::default(),
             event: false,
@@ -172,7 +172,8 @@ impl Slave {
     fn start_tpdo(&mut self, now: Instant, index: u16) {
         let on_start = self.behaviour.tpdo_on_start;
         let with_first = self.behaviour.tpdo_with_first_sync;
-        let counted = self.sync.overflow != 0 && self.behaviour.sync_start_value_kept;
+        let counter = self.sync.overflow != 0 || !self.behaviour.pdo.start_value_needs_counter;
+        let counted = counter && self.behaviour.sync_start_value_kept;
         let Some(tpdo) = self.tpdos.iter_mut().find(|tpdo| tpdo.index == index) else {
             return;
         };
@@ -242,7 +243,8 @@ impl Slave {
             } else {
                 kind & 0x7F
             };
-            tpdo.waits &= counter.is_some() && counter != Some(tpdo.communication.start);
+            let unnumbered = counter.is_none() && self.behaviour.pdo.start_value_needs_counter;
+            tpdo.waits &= !unnumbered && counter != Some(tpdo.communication.start);
             if tpdo.waits {
                 continue;
             }

@@ -30,7 +30,9 @@ impl Slave {
         if !object.writable {
             return Err(Abort::READ_ONLY);
         }
-        object.takes(value)?;
+        if !self.count_unchecked(address, value) {
+            object.takes(value)?;
+        }
         if let Some(twin) = self.twin(address).and_then(|twin| self.objects.get(twin)) {
             twin.takes(value)?;
         }
@@ -57,6 +59,13 @@ impl Slave {
             self.follow(now, address);
         }
         Ok(true)
+    }
+
+    /// Whether this is a count of mapped objects that nothing is asked of, as in no right device.
+    fn count_unchecked(&self, address: Address, value: &[u8]) -> bool {
+        let mapping = Parameter::of(address.index()) == Some(Parameter::Mapping);
+        let count = mapping && address.sub() == 0 && value.len() == 1;
+        count && !self.behaviour.pdo.count_checked
     }
 
     /// What was refused is cleared by a device that has written before it checked.

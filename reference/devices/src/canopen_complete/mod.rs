@@ -196,4 +196,6 @@ impl Participant for Complete {
 }
 
 #[cfg(test)]
+mod pdo_tests;
+#[cfg(test)]
 mod tests;
