@@ -8,5 +8,6 @@
 
 mod blocks;
 mod judging;
+mod pdos;
 mod restoring;
 mod scripted;
