@@ -79,7 +79,7 @@ pub(super) fn pdo_name(number: Option<u8>, identifier: Option<CanId>) -> Result<
         (None, Some(identifier)) => Ok(PdoName::Identifier(identifier.0)),
         _ => Err(Wrong::new(
             code::KEYS_TOGETHER,
-            "which PDO this is",
+            "a PDO is meant by its number or by its identifier",
             "expected `number` or `identifier`",
         )),
     }
