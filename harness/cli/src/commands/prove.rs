@@ -5,7 +5,7 @@ mod show;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use fieldproof_record::{Event, Sink, Verdict, VerdictCounts};
@@ -19,7 +19,7 @@ use crate::options::{Format, ProveOptions};
 use crate::player::{self, Plan};
 use crate::progress::Progress;
 use crate::screen::Screen;
-use crate::{select, stop};
+use crate::{object_faults, select, stop};
 
 /// Plays every suite against every fault and shows which case catches which.
 pub(crate) fn prove(options: &ProveOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
@@ -48,27 +48,26 @@ pub(crate) fn prove(options: &ProveOptions, screen: &mut Screen) -> Result<Exit,
 }
 
 /// What a device is made to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind", content = "name")]
 enum Guise {
     AsItIs,
     Variant(&'static str),
-    Fault(&'static str),
+    Fault(String),
 }
 
 /// One device in one guise, to be played with all suites.
-struct Round<'l> {
-    device: &'l Device,
+struct Round {
+    device: Arc<Device>,
     guise: Guise,
     breaks: &'static str,
     behaviour: Behaviour,
 }
 
-fn rounds<'l>(
-    library: &'l Library,
-    plan: &Plan,
-    options: &ProveOptions,
-) -> Result<Vec<Round<'l>>, Complaint> {
+/// A fault that is not one of a single value shows in any row of a walk, or in none: so many are played.
+const ROWS_OF_A_WALK: u16 = 8;
+
+fn rounds(library: &Library, plan: &Plan, options: &ProveOptions) -> Result<Vec<Round>, Complaint> {
     let devices: Vec<&Device> = library
         .devices
         .iter()
@@ -78,23 +77,19 @@ fn rounds<'l>(
         return Err(select::nothing_selected());
     }
     select::must_be_simulated(&devices)?;
-    let known: BTreeSet<&str> = devices
-        .iter()
-        .flat_map(|device| device.faults().iter().map(|it| it.name))
-        .collect();
-    if let Some(name) = options
-        .faults
-        .iter()
-        .find(|name| !known.contains(name.as_str()))
-    {
-        let known: Vec<&str> = known.into_iter().collect();
-        return Err(Complaint::unknown("fault", name, &known));
-    }
+    faults_must_be_known(&devices, &options.faults)?;
     let mut rounds = Vec::new();
     for device in devices {
+        let whole = Arc::new(device.clone());
+        let sampled = Arc::new(device.with_some_of_each(&library.suites, ROWS_OF_A_WALK));
         let mut round = |guise, breaks, fault: Option<&str>, variant: Option<&str>| {
+            let of_value = fault.is_some_and(|name| object_faults::of(device, name).is_some());
+            let device = match fault.is_some() && !of_value {
+                true => &sampled,
+                false => &whole,
+            };
             rounds.push(Round {
-                device,
+                device: Arc::clone(device),
                 guise,
                 breaks,
                 behaviour: Behaviour {
@@ -108,18 +103,49 @@ fn rounds<'l>(
         for variant in device.variants() {
             round(Guise::Variant(variant.name), "", None, Some(variant.name));
         }
-        for fault in device.faults() {
-            if options.faults.is_empty() || options.faults.iter().any(|name| name == fault.name) {
-                round(
-                    Guise::Fault(fault.name),
-                    fault.breaks,
-                    Some(fault.name),
-                    None,
-                );
-            }
+        for (name, breaks) in faults(device, &options.faults) {
+            round(Guise::Fault(name.clone()), breaks, Some(&name), None);
         }
     }
     Ok(rounds)
+}
+
+/// The faults that `device` is given, each with the clause it breaks: those asked for, or else all that have a name and
+/// some of each kind that single values can have.
+fn faults(device: &Device, asked: &[String]) -> Vec<(String, &'static str)> {
+    let named = device.faults().iter();
+    let named = named.map(|fault| (fault.name.to_owned(), fault.breaks));
+    if asked.is_empty() {
+        let of_objects = object_faults::some(device).into_iter();
+        return named
+            .chain(of_objects.map(|fault| (fault.to_string(), fault.kind().breaks())))
+            .collect();
+    }
+    let of_objects = asked
+        .iter()
+        .filter_map(|name| object_faults::of(device, name));
+    named
+        .filter(|(name, _)| asked.contains(name))
+        .chain(of_objects.map(|fault| (fault.to_string(), fault.kind().breaks())))
+        .collect()
+}
+
+fn faults_must_be_known(devices: &[&Device], asked: &[String]) -> Result<(), Complaint> {
+    let known: BTreeSet<&str> = devices
+        .iter()
+        .flat_map(|device| device.faults().iter().map(|it| it.name))
+        .collect();
+    let is_known = |name: &&String| {
+        let of_object = |device: &&Device| object_faults::of(device, name).is_some();
+        known.contains(name.as_str()) || devices.iter().any(of_object)
+    };
+    match asked.iter().find(|name| !is_known(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let known: Vec<&str> = known.iter().copied().collect();
+            Err(Complaint::unknown("fault", name, &known))
+        }
+    }
 }
 
 /// What a round came to, by case as written, its rows taken together.
@@ -179,7 +205,7 @@ impl Tally {
 
 /// Plays one round. A device that cannot be put back stops its lane; the cases after that one are played on a fresh
 /// device, for each is to show what it catches.
-fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally, Complaint> {
+fn play_round(plan: &Plan, round: &Round, stop: &AtomicBool) -> Result<Tally, Complaint> {
     let mut tally = Tally::default();
     let mut plan = Plan {
         behaviour: round.behaviour.clone(),
@@ -188,7 +214,7 @@ fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally
     loop {
         let stops = tally.stops.len();
         let tried = tally.tried.len();
-        player::play(round.device, &plan, &mut tally, stop)
+        player::play(&round.device, &plan, &mut tally, stop)
             .map_err(|error| Complaint::bench(error.to_string()))?;
         let whole = tally.stops.len() == stops;
         let nothing_new = tally.tried.len() == tried;
@@ -202,7 +228,7 @@ fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally
 /// Plays all rounds, as many at once as there are processors.
 fn play_all(
     plan: &Plan,
-    rounds: &[Round<'_>],
+    rounds: &[Round],
     stop: &AtomicBool,
     shown: bool,
 ) -> Result<Vec<Tally>, Complaint> {
@@ -248,7 +274,7 @@ struct Proof {
     holds: bool,
     rounds: Vec<Finding>,
     /// Faults that no case caught: device and name.
-    uncaught: Vec<(String, &'static str)>,
+    uncaught: Vec<(String, String)>,
     /// Cases that were played and caught nothing on any device.
     idle_cases: Vec<String>,
 }
@@ -280,7 +306,7 @@ impl Finding {
     }
 }
 
-fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
+fn judge(rounds: &[Round], tallies: &[Tally]) -> Proof {
     let mut findings: Vec<Finding> = Vec::new();
     let mut played: BTreeSet<String> = BTreeSet::new();
     let mut caught: BTreeSet<String> = BTreeSet::new();
@@ -301,7 +327,7 @@ fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
         }
         findings.push(Finding {
             device: round.device.name().to_owned(),
-            guise: round.guise,
+            guise: round.guise.clone(),
             breaks: round.breaks,
             failed,
             inconclusive: tally.with(Verdict::Inconclusive),
@@ -310,10 +336,12 @@ fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
             cases: tally.cases.len(),
         });
     }
-    let uncaught: Vec<(String, &'static str)> = findings
+    let uncaught: Vec<(String, String)> = findings
         .iter()
-        .filter_map(|finding| match finding.guise {
-            Guise::Fault(name) if finding.failed.is_empty() => Some((finding.device.clone(), name)),
+        .filter_map(|finding| match &finding.guise {
+            Guise::Fault(name) if finding.failed.is_empty() => {
+                Some((finding.device.clone(), name.clone()))
+            }
             _ => None,
         })
         .collect();

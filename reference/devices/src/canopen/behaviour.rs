@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, PdoBehaviour};
+use super::{BlockTransfer, ObjectFault, PdoBehaviour};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -24,6 +24,8 @@ pub struct Behaviour {
     pub block: BlockTransfer,
     /// PDOs.
     pub pdo: PdoBehaviour,
+    /// One value is not as the dictionary says.
+    pub object_fault: Option<ObjectFault>,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -199,6 +201,7 @@ impl Default for Behaviour {
             heartbeat_on_write: false,
             block: BlockTransfer::default(),
             pdo: PdoBehaviour::default(),
+            object_fault: None,
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,
