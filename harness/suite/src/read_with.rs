@@ -23,6 +23,12 @@ pub(crate) fn optional_time<'de, D: Deserializer<'de>>(
     Ok(time.map(|time| time.0))
 }
 
+pub(crate) fn one_or_many<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Vec<T>, D::Error> {
+    OneOrMany::<T>::deserialize(deserializer).map(|values| values.0)
+}
+
 pub(crate) fn bit_rate<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     BitRate::deserialize(deserializer).map(|rate| rate.0)
 }
@@ -55,6 +61,13 @@ pub(crate) fn decode_big_endian<'de, D: Deserializer<'de>>(
 
 pub(crate) fn pdo_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u8, D::Error> {
     within(u8::deserialize(deserializer)?, 1, 4)
+}
+
+pub(crate) fn optional_pdo_number<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u8>, D::Error> {
+    let number = Option::<u8>::deserialize(deserializer)?;
+    number.map(|number| within(number, 1, 4)).transpose()
 }
 
 pub(crate) fn pdo_data<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Bytes, D::Error> {

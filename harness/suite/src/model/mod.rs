@@ -2,6 +2,7 @@
 //! reads into these.
 
 mod canopen;
+mod drive;
 mod frames;
 mod modbus;
 mod sdo;
@@ -10,6 +11,7 @@ mod stimulate;
 mod suite;
 
 pub use canopen::*;
+pub use drive::*;
 pub use frames::*;
 pub use modbus::*;
 pub use sdo::*;

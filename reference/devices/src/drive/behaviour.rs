@@ -24,8 +24,12 @@ pub struct Behaviour {
     pub missing_transitions: &'static [(Power, Command)],
     /// Transitions that there should not be.
     pub surplus_transitions: &'static [(Power, Command, Power)],
-    /// 605Ah decides what follows a quick stop.
-    pub quick_stop_option_kept: bool,
+    /// What follows a quick stop, whatever 605Ah says.
+    pub quick_stop_option: Option<u32>,
+    /// A command is known by the bits that matter to it, and not by the whole low half byte.
+    pub commands_decoded: bool,
+    /// Bit 9 of the statusword says that the controlword is obeyed.
+    pub remote_bit_shown: bool,
     /// Bit 5 of the statusword is 1 but while a quick stop is active.
     pub quick_stop_bit_shown: bool,
     /// Bit 4 of the statusword says that there is voltage.
@@ -94,7 +98,9 @@ impl Default for Behaviour {
             unsupported_mode_refused: true,
             missing_transitions: &[],
             surplus_transitions: &[],
-            quick_stop_option_kept: true,
+            quick_stop_option: None,
+            commands_decoded: true,
+            remote_bit_shown: true,
             quick_stop_bit_shown: true,
             voltage_bit_shown: true,
             local_control_told: true,

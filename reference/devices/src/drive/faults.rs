@@ -175,6 +175,18 @@ pub(crate) const COMMON: &[Fault] = &[
         |behaviour| behaviour.drive.quick_stop_bit_shown = false,
     ),
     fault(
+        "drive-commands-by-whole-word",
+        "CiA 402: coding of the controlword",
+        "knows the controlwords 0000h, 0002h, 0006h, 0007h and 000Fh, and no other with the same bits that matter",
+        |behaviour| behaviour.drive.commands_decoded = false,
+    ),
+    fault(
+        "drive-remote-bit-missing",
+        "CiA 402: statusword, bit 9",
+        "shows that the controlword is not obeyed, and obeys it",
+        |behaviour| behaviour.drive.remote_bit_shown = false,
+    ),
+    fault(
         "drive-voltage-bit-missing",
         "CiA 402: statusword, bit 4",
         "shows no voltage while the motor has torque",
@@ -254,7 +266,13 @@ pub(crate) const OPTIONS: &[Fault] = &[
         "drive-quick-stop-option-ignored",
         "CiA 402: quick stop option code",
         "is in switch on disabled after a quick stop though 605Ah = 6 has it stay",
-        |behaviour| behaviour.drive.quick_stop_option_kept = false,
+        |behaviour| behaviour.drive.quick_stop_option = Some(2),
+    ),
+    fault(
+        "drive-quick-stop-never-ends",
+        "CiA 402: quick stop option code; transition 12",
+        "stays in quick stop active though 605Ah = 2 ends it",
+        |behaviour| behaviour.drive.quick_stop_option = Some(6),
     ),
     fault(
         "drive-quick-stop-left-by-shutdown",

@@ -131,7 +131,9 @@ impl Drive {
                 return;
             }
         }
-        self.obey(Command::of(word), objects);
+        if self.behaviour.commands_decoded || matches!(word & 0x0F, 0x0 | 0x2 | 0x6 | 0x7 | 0xF) {
+            self.obey(Command::of(word), objects);
+        }
         if self.power == Power::OperationEnabled {
             let new = if self.behaviour.set_point_on_edge {
                 rising(NEW_SET_POINT)
@@ -183,9 +185,8 @@ impl Drive {
 
     /// 605Ah: 0 takes the torque away, 1 to 3 end in switch on disabled, 5 to 8 stay.
     fn quick_stop(&mut self, objects: &Objects) {
-        let option = objects
-            .number(QUICK_STOP_OPTION)
-            .filter(|_| self.behaviour.quick_stop_option_kept);
+        let chosen = self.behaviour.quick_stop_option;
+        let option = chosen.or_else(|| objects.number(QUICK_STOP_OPTION));
         self.enter(Power::QuickStopActive);
         match option {
             Some(0) => self.enter(Power::SwitchOnDisabled),
@@ -262,7 +263,8 @@ impl Drive {
             motion::PROFILE_VELOCITY_MODE => self.motion.is_still() == behaviour.speed_zero_shown,
             mode => mode >= 8,
         };
-        let remote = !(self.conditions.is_local() && behaviour.local_control_told);
+        let local = self.conditions.is_local() && behaviour.local_control_told;
+        let remote = behaviour.remote_bit_shown && !local;
         let bits = [
             (VOLTAGE_ENABLED, behaviour.voltage_bit_shown),
             (REMOTE, remote),

@@ -319,6 +319,14 @@ fn faults_of_transitions() {
             "0217",
             "0231",
         ),
+        (
+            "drive-quick-stop-never-ends",
+            "6 F 2 20ms ?",
+            "0250",
+            "0217",
+        ),
+        ("drive-commands-by-whole-word", "6 F D ?", "0250", "0237"),
+        ("drive-remote-bit-missing", "6 ?", "0231", "0031"),
         ("drive-quick-stop-kept", "605Aw=6 6 F 2 0 ?", "0250", "0217"),
         (
             "drive-fault-left-by-disable-voltage",

@@ -48,7 +48,7 @@ const FAULTS: [Fault;
     drive::faults::VALUES,
 ]);
 
-/// Section 4.3.1 names the modes: profile position, velocity and torque, homing, and the cyclic synchronous ones. The
+/// Section 4.3 names the modes: profile position, velocity and torque, homing, and the cyclic synchronous ones. The
 /// unit of velocity is rpm; ten thousand pulses are a revolution of the motor that section 1 has its defaults for.
 const MODEL: Model = Model {
     modes: &[1, 3, 4, 6, 8, 9, 10],
