@@ -173,6 +173,10 @@ pub enum Feature {
     Emergency,
     /// LSS slave.
     Lss,
+    /// LSS fastscan.
+    LssFastscan,
+    /// A remote frame fetches a TPDO whose COB-ID allows it.
+    RemoteFrames,
     /// The state machine of drives, CiA 402.
     Cia402,
     /// Mode of operation 1 of CiA 402.
@@ -193,6 +197,8 @@ pub enum Feature {
     CyclicSynchronousVelocity,
     /// Mode of operation 10 of CiA 402.
     CyclicSynchronousTorque,
+    /// An encoder profile device, CiA 406.
+    Cia406,
     /// Modbus RTU slave.
     ModbusRtu,
     /// Modbus TCP server.

@@ -28,5 +28,7 @@ mod yaml;
 
 pub use diagnostic::{Diagnostic, Position, Severity};
 pub use expand::Environment;
-pub use load::{CaseRef, Loaded, SourceFile, Suite, load, load_bench, load_device, unknown_checks};
+pub use load::{
+    CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_device, unknown_checks,
+};
 pub use schema::{bench_schema, device_schema, schema};

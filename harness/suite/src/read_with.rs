@@ -26,7 +26,7 @@ pub(crate) fn optional_time<'de, D: Deserializer<'de>>(
 pub(crate) fn one_or_many<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Vec<T>, D::Error> {
-    OneOrMany::<T>::deserialize(deserializer).map(|values| values.0)
+    OneOrMany::deserialize(deserializer).map(|many| many.0)
 }
 
 pub(crate) fn bit_rate<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {

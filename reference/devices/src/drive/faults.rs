@@ -312,12 +312,6 @@ pub(crate) const VALUES: &[Fault] = &[
         |behaviour| behaviour.drive.error_code_shown = false,
     ),
     fault(
-        "drive-error-code-differs",
-        "CiA 402: error code",
-        "has another error code in 603Fh than in its EMCY",
-        |behaviour| behaviour.drive.error_code_difference = 0x0100,
-    ),
-    fault(
         "drive-velocity-without-sign",
         "CiA 402: velocity actual value",
         "shows 606Ch without its sign",

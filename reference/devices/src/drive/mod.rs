@@ -223,11 +223,12 @@ impl Drive {
             return;
         }
         let taken = self.behaviour.any_mode_taken || self.has_mode(mode);
-        if taken && self.next_mode.map_or(self.mode, |(next, _)| next) != mode {
-            self.next_mode = Some((mode, None));
-            if self.behaviour.mode_switching.is_zero() {
-                self.take_mode();
-            }
+        if !taken || self.next_mode.is_some_and(|(next, _)| next == mode) {
+            return;
+        }
+        self.next_mode = Some((mode, None)).filter(|_| mode != self.mode);
+        if self.behaviour.mode_switching.is_zero() {
+            self.take_mode();
         }
     }
 
