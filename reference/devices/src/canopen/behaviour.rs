@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, ObjectFault, PdoBehaviour};
+use super::{BlockTransfer, ObjectFault, OrdinaryTransfer, PdoBehaviour};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -24,6 +24,10 @@ pub struct Behaviour {
     pub block: BlockTransfer,
     /// PDOs.
     pub pdo: PdoBehaviour,
+    /// Expedited and segmented SDO transfer.
+    pub sdo: OrdinaryTransfer,
+    /// Abort codes, and what is said in their place.
+    pub abort_codes: &'static [(u32, u32)],
     /// One value is not as the dictionary says.
     pub object_fault: Option<ObjectFault>,
 
@@ -37,12 +41,12 @@ pub struct Behaviour {
     pub unknown_nmt_command_stops: bool,
     /// The state byte of heartbeat and guarding.
     pub state_codes: StateCodes,
+    /// A value beyond the limits of its object is refused.
+    pub limits_checked: bool,
     /// A request with an unknown command specifier is refused, and not ignored.
     pub unknown_command_refused: bool,
     /// A number travels in an expedited upload with its most significant byte first.
     pub upload_big_endian: bool,
-    /// The abort code for a sub-index that does not exist.
-    pub abort_no_sub_index: u32,
     /// What bytes 1 to 3 of an abort name.
     pub abort_multiplexer: AbortMultiplexer,
     /// The toggle bit alternates in the answers of a segmented upload.
@@ -105,6 +109,8 @@ pub struct Behaviour {
     pub reserved_types_taken: bool,
     /// With transmission type 252 a remote frame fetches what the last SYNC found, not what there is.
     pub remote_sample_kept: bool,
+    /// A TPDO carries what there is when it leaves, and not what there was when it was started.
+    pub tpdo_refreshed: bool,
     /// A TPDO waits for the SYNC with its start value.
     pub sync_start_value_kept: bool,
     /// A SYNC that is produced has the counter that 1019h asks for.
@@ -148,6 +154,8 @@ pub enum AbortMultiplexer {
     OfRequest,
     /// The object at the next index.
     NextIndex,
+    /// What bytes 1 to 3 of the request name, though a segment names nothing there.
+    OfFrame,
 }
 
 /// Which NMT commands are obeyed beside those to the own node-ID.
@@ -201,11 +209,14 @@ impl Default for Behaviour {
             heartbeat_on_write: false,
             block: BlockTransfer::default(),
             pdo: PdoBehaviour::default(),
+            sdo: OrdinaryTransfer::default(),
+            abort_codes: &[],
             object_fault: None,
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,
             unknown_nmt_command_stops: false,
+            limits_checked: true,
             unknown_command_refused: true,
             upload_big_endian: false,
             surplus_syncs: 0,
@@ -220,7 +231,6 @@ impl Default for Behaviour {
             lss_refused_index: None,
             lss_identity_big_endian: false,
             state_codes: StateCodes::STANDARD,
-            abort_no_sub_index: 0x0609_0011,
             abort_multiplexer: AbortMultiplexer::OfRequest,
             toggle_alternates: true,
             expedited_size_off_by_one: false,
@@ -242,6 +252,7 @@ impl Default for Behaviour {
             lss_fastscan_unconfigured_only: true,
             reserved_types_taken: false,
             remote_sample_kept: true,
+            tpdo_refreshed: true,
             sync_start_value_kept: true,
             sync_counter_sent: true,
             inhibit_time_kept: true,

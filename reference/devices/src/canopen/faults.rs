@@ -8,7 +8,7 @@ pub(crate) const ABORT_CODE_WRONG: Fault = Fault {
     breaks: "CiA 301: SDO abort transfer, abort code 06090011h",
     words: "says that the object does not exist (06020000h) where only the sub-index does not",
     caught_by: "sdo",
-    apply: |behaviour| behaviour.canopen.abort_no_sub_index = 0x0602_0000,
+    apply: |behaviour| behaviour.canopen.abort_codes = &[(0x0609_0011, 0x0602_0000)],
 };
 
 pub(crate) const ABORT_NAMES_ANOTHER_OBJECT: Fault = Fault {
@@ -55,6 +55,14 @@ pub(crate) const LSS_REVISION_ANSWERS_5B: Fault = Fault {
     words: "answers the inquiry for the revision number (5Ch) with 5Bh",
     caught_by: "lss",
     apply: |behaviour| behaviour.canopen.lss_revision_specifier = 0x5B,
+};
+
+pub(crate) const TPDO_NOT_REFRESHED: Fault = Fault {
+    name: "tpdo-not-refreshed",
+    breaks: "CiA 301: PDO, the data of the application objects that are mapped",
+    words: "sends in every TPDO what its objects held when the node was started",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.tpdo_refreshed = false,
 };
 
 pub(crate) const TOGGLE_NOT_ALTERNATED: Fault = Fault {

@@ -340,7 +340,11 @@ impl Slave {
             tpdo.communication.kind == SAMPLED_BY_SYNC && self.behaviour.remote_sample_kept;
         let fresh = tpdo.payload(&self.objects);
         let stale = !self.behaviour.pdo.tpdo_fresh;
-        let payload = if latched { tpdo.sampled } else { fresh };
+        let payload = if latched || !self.behaviour.tpdo_refreshed {
+            tpdo.sampled
+        } else {
+            fresh
+        };
         let before = std::mem::replace(&mut tpdo.carried, fresh);
         let period = tpdo.communication.event_timer;
         // A timer that was due keeps its pace; one that was not starts again.
