@@ -43,14 +43,6 @@ pub(crate) fn exceptions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<V
     Ok(exceptions.0.into_iter().map(|code| code.0).collect())
 }
 
-/// Of a CAN frame, low byte first unless it says otherwise.
-pub(crate) fn decode_little_endian<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Vec<Decode>, D::Error> {
-    let decode = OneOrMany::<DecodeFile>::deserialize(deserializer)?;
-    Ok(decode.0.into_iter().map(|one| one.lower(false)).collect())
-}
-
 /// Of Modbus bytes, high byte first unless it says otherwise.
 pub(crate) fn decode_big_endian<'de, D: Deserializer<'de>>(
     deserializer: D,

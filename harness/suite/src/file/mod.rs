@@ -21,6 +21,7 @@ pub(crate) use stimulate::*;
 
 crate::forms::schema_of!(
     crate::model::Sync: SyncFile,
+    crate::model::Expect: ExpectFile,
     crate::model::ExpectTpdo: ExpectTpdoFile,
     crate::model::SdoRead: SdoReadFile,
     crate::model::SdoWrite: SdoWriteFile,

@@ -2,8 +2,8 @@
 
 use crate::forms::TwoForms;
 use crate::model::{
-    Crc, Expect, ExpectBootUp, ExpectBytes, ExpectSilence, Nmt, NmtAddress, NmtCommand, Send,
-    SendBytes, Sync,
+    Crc, Expect, ExpectBootUp, ExpectBytes, ExpectSilence, Judge, Nmt, NmtAddress, NmtCommand,
+    Send, SendBytes, Sync,
 };
 use crate::scalar::{BytePatternText, Bytes, FrameText, PatternText, Time};
 
@@ -27,7 +27,15 @@ macro_rules! short_form {
 
 short_form! {
     Send from FrameText: |frame| Send { frame };
-    Expect from PatternText: |frame| Expect { frame, within: None, decode: Vec::new(), check: None };
+    Expect from PatternText: |frame| Expect {
+        frame,
+        within: None,
+        decode: Vec::new(),
+        period: None,
+        count: 0,
+        judge: Judge::default(),
+        check: None,
+    };
     ExpectSilence from Time: |time| ExpectSilence {
         lasting: time.0,
         of: Vec::new(),

@@ -51,4 +51,8 @@ impl Abort {
     pub(crate) const LOCAL_CONTROL: Abort = Abort(0x0800_0021);
     /// Data cannot be transferred or stored in the present device state.
     pub(crate) const DEVICE_STATE: Abort = Abort(0x0800_0022);
+    /// No data available.
+    pub(crate) const NO_DATA: Abort = Abort(0x0800_0024);
+    /// General error.
+    pub(crate) const GENERAL: Abort = Abort(0x0800_0000);
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::BlockTransfer;
+use super::{BlockTransfer, Departures, Manners};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -22,6 +22,10 @@ pub struct Behaviour {
     pub heartbeat_on_write: bool,
     /// SDO block transfer.
     pub block: BlockTransfer,
+    /// What else a right slave may do one way or the other.
+    pub manners: Manners,
+    /// Departures from the rules of SYNC, EMCY, TIME, storing and COB-IDs.
+    pub departs: Departures,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -196,6 +200,8 @@ impl Default for Behaviour {
             tpdo_with_first_sync: false,
             heartbeat_on_write: false,
             block: BlockTransfer::default(),
+            manners: Manners::default(),
+            departs: Departures::default(),
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,

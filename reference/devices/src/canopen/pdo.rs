@@ -191,10 +191,14 @@ impl Slave {
             return;
         };
         let mapped: u32 = rpdo.fields.iter().map(|field| field.bits).sum();
-        if frame.len() < mapped.div_ceil(8) as usize {
-            self.report(now, super::emergency::PDO_TOO_SHORT);
+        let length = mapped.div_ceil(8) as usize;
+        if frame.len() < length {
+            if !self.behaviour.departs.short_pdo_unreported {
+                self.report(now, super::emergency::PDO_TOO_SHORT);
+            }
             return;
         }
+        let long = frame.len() > length && self.profile.complete;
         let mut data = [0; 8];
         data.iter_mut()
             .zip(frame.bytes())
@@ -208,6 +212,9 @@ impl Slave {
             self.take_pdo(now, &fields, data, application);
         } else {
             rpdo.latched = Some(data);
+        }
+        if long && !self.behaviour.manners.long_pdo_unreported {
+            self.report(now, super::emergency::PDO_TOO_LONG);
         }
     }
 

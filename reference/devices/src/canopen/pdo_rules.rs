@@ -1,5 +1,6 @@
 //! What may be written to PDO parameters, and when.
 
+use super::cob_id::is_restricted;
 use super::objects::Objects;
 use super::pdo::{
     EVENT_DRIVEN, INVALID, MappingEntry, NO_REMOTE, ON_REMOTE_FRAME, RPDO_COMMUNICATION,
@@ -61,7 +62,7 @@ pub(super) fn check(
     value: &[u8],
 ) -> Result<(), Abort> {
     match (parameter, address.sub()) {
-        (Parameter::Communication, 1) => cob_id(objects, address, number(value)),
+        (Parameter::Communication, 1) => cob_id(objects, behaviour, address, number(value)),
         (Parameter::Communication, 2) => {
             let kind = value.first().copied().unwrap_or(0);
             transmission_type(profile, behaviour, is_transmit(address.index()), kind)
@@ -131,12 +132,14 @@ fn transmission_type(
 
 /// The identifier of an enabled PDO stays as it is; an 11-bit one of the NMT, SDO, error control or LSS services is
 /// never taken.
-fn cob_id(objects: &Objects, address: Address, value: u32) -> Result<(), Abort> {
+fn cob_id(
+    objects: &Objects,
+    behaviour: &Behaviour,
+    address: Address,
+    value: u32,
+) -> Result<(), Abort> {
     let identifier = value & !(INVALID | NO_REMOTE);
-    let restricted = matches!(
-        identifier,
-        0x000..=0x07F | 0x101..=0x180 | 0x581..=0x5FF | 0x601..=0x67F | 0x6E0..=0x6FF | 0x701..
-    );
+    let restricted = is_restricted(identifier, &behaviour.departs);
     if identifier > 0x7FF || (restricted && value & INVALID == 0) {
         return Err(Abort::INVALID_VALUE);
     }

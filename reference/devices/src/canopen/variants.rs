@@ -41,3 +41,39 @@ pub(crate) const SLOW: Variant = Variant {
     words: "takes 10 to 15 ms for every answer",
     apply: |behaviour| behaviour.canopen.response_us = 10_000..15_000,
 };
+
+pub(crate) const EMPTY_PLACES_READ_0: Variant = Variant {
+    name: "empty-places-read-0",
+    words: "reads 0 in a place of 1003h that holds no error, where others refuse",
+    apply: |behaviour| behaviour.canopen.manners.empty_places_refused = false,
+};
+
+pub(crate) const GENERAL_ABORT_CODES: Variant = Variant {
+    name: "general-abort-codes",
+    words: "refuses values of 1005h to 1019h with the general code 08000000h",
+    apply: |behaviour| behaviour.canopen.manners.general_abort_codes = true,
+};
+
+pub(crate) const FIRST_SYNC_AT_ONCE: Variant = Variant {
+    name: "first-sync-at-once",
+    words: "produces its first SYNC at once, not after one period: CiA 301 has it within a period",
+    apply: |behaviour| behaviour.canopen.manners.first_sync_at_once = true,
+};
+
+pub(crate) const EMERGENCY_LATE: Variant = Variant {
+    name: "emergency-late",
+    words: "sends an EMCY 20 ms after its error: CiA 301 sets no time",
+    apply: |behaviour| behaviour.canopen.manners.emergency_late = true,
+};
+
+pub(crate) const PASSING_ERRORS_SHOWN: Variant = Variant {
+    name: "passing-errors-shown",
+    words: "shows a communication error in the EMCY for a PDO of the wrong length, though 1001h has forgotten it",
+    apply: |behaviour| behaviour.canopen.manners.passing_errors_shown = true,
+};
+
+pub(crate) const LONG_PDO_UNREPORTED: Variant = Variant {
+    name: "long-pdo-unreported",
+    words: "uses the first bytes of an RPDO that is too long without an EMCY: 8220h is optional",
+    apply: |behaviour| behaviour.canopen.manners.long_pdo_unreported = true,
+};

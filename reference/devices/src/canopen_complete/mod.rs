@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, faults, service_faults,
+    block_faults, communication_faults, faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -47,13 +47,17 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_BIT_TIMING_MISSING,
 ];
 const FAULTS: [Fault;
-    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
-    all_of(&[
-        faults::COMMON,
-        service_faults::ALL,
-        OWN_FAULTS,
-        block_faults::BLOCK,
-    ]);
+    faults::COMMON.len()
+        + service_faults::ALL.len()
+        + communication_faults::ALL.len()
+        + OWN_FAULTS.len()
+        + block_faults::BLOCK.len()] = all_of(&[
+    faults::COMMON,
+    service_faults::ALL,
+    communication_faults::ALL,
+    OWN_FAULTS,
+    block_faults::BLOCK,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -70,6 +74,12 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
         canopen::variants::SMALL_BLOCKS,
+        canopen::variants::EMPTY_PLACES_READ_0,
+        canopen::variants::GENERAL_ABORT_CODES,
+        canopen::variants::FIRST_SYNC_AT_ONCE,
+        canopen::variants::EMERGENCY_LATE,
+        canopen::variants::PASSING_ERRORS_SHOWN,
+        canopen::variants::LONG_PDO_UNREPORTED,
     ],
     build,
 };
@@ -87,6 +97,7 @@ fn documented() -> Behaviour {
         offered: true,
         ..BlockTransfer::default()
     };
+    behaviour.canopen.manners.empty_places_refused = true;
     behaviour
 }
 
@@ -189,5 +200,7 @@ impl Participant for Complete {
     }
 }
 
+#[cfg(test)]
+mod communication_tests;
 #[cfg(test)]
 mod tests;
