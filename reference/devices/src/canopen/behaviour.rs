@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, Departures, Manners};
+use super::{BlockTransfer, Departures, Manners, ObjectFault};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -26,6 +26,8 @@ pub struct Behaviour {
     pub manners: Manners,
     /// Departures from the rules of SYNC, EMCY, TIME, storing and COB-IDs.
     pub departs: Departures,
+    /// One value is not as the dictionary says.
+    pub object_fault: Option<ObjectFault>,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -202,6 +204,7 @@ impl Default for Behaviour {
             block: BlockTransfer::default(),
             manners: Manners::default(),
             departs: Departures::default(),
+            object_fault: None,
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,

@@ -17,6 +17,7 @@ mod lss;
 mod lss_services;
 mod memory;
 mod nmt;
+mod object_fault;
 mod objects;
 mod pdo;
 mod pdo_rules;
@@ -39,6 +40,7 @@ pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, Sta
 pub use departures::{Departures, Manners};
 pub(crate) use emergency::HARDWARE;
 use nmt::State;
+pub use object_fault::{ObjectFault, ObjectFaultKind};
 pub(crate) use objects::Objects;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
 pub use sdo::{BlockTransfer, Recovery};
