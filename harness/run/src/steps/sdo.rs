@@ -238,6 +238,13 @@ impl Tester<'_> {
                 let names: Vec<String> = expected.iter().map(Actual::to_string).collect();
                 wrong(format!("one of {}", names.join(", ")))
             }
+            ReadExpectation::OtherThan(value) => {
+                let unwanted = resolve(value, None, saved)?;
+                if unwanted == *actual {
+                    return wrong(format!("any but {unwanted}"));
+                }
+                Ok(())
+            }
             ReadExpectation::Claimed(claim) => match self.device.identity.claimed(*claim) {
                 None => Err(Stop::Bench(format!(
                     "the device claims no {}",

@@ -196,6 +196,8 @@ fn check_needs(case: &Case, step: &Located<Step>, problems: &mut Vec<Problem>) {
         Stimulate::ProcessValue { .. } => (StimulusName::ProcessValue, "process-value"),
         Stimulate::Condition { .. } => (StimulusName::Condition, "condition"),
         Stimulate::Setting { .. } => (StimulusName::Setting, "setting"),
+        // The tester's own, which no bench need offer.
+        Stimulate::Companion { .. } => return,
     };
     if !case.needs.contains(&Need::Stimulus(stimulus)) {
         let problem = Problem::new(

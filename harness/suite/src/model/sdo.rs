@@ -122,6 +122,8 @@ pub enum ReadExpectation {
     OneOf(Vec<Value>),
     /// One of these, or a refusal: `expect: {one-of: [0], abort: [0x08000024]}`.
     OneOfOrAbort(Vec<Value>, AbortExpectation),
+    /// Any but this one: `expect: {other-than: "{stopped}"}`.
+    OtherThan(Value),
     /// Between, limits included: `expect: {from: 5, to: 10}`.
     Range {
         /// Lower limit.
