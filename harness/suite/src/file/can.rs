@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::code;
 use crate::forms::OneOrMany;
-use crate::model::{Decode, Expect, ExpectTpdo, Judge, NmtAddress, Sync, ValueType};
+use crate::model::{Alternative, Decode, Expect, ExpectTpdo, Judge, NmtAddress, Sync, ValueType};
 use crate::problem::Wrong;
 use crate::read_with::{optional_time, pdo_number, ten};
 use crate::scalar::{
@@ -127,6 +127,9 @@ impl TryFrom<SyncFile> for Sync {
 pub(crate) struct ExpectFile {
     /// What must come.
     frame: PatternText,
+    /// What may come in its place: other frames with this identifier, or `silence`.
+    #[serde(default)]
+    or: OneOrMany<Alternative>,
     /// How long after the last send; else what the description promises.
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
@@ -156,6 +159,7 @@ impl TryFrom<ExpectFile> for Expect {
         let decode = file.decode.0.into_iter().map(|one| one.lower(false));
         Ok(Expect {
             frame: file.frame,
+            or: file.or.0,
             within: file.within,
             decode: decode.collect(),
             period: file.period,

@@ -29,6 +29,7 @@ short_form! {
     Send from FrameText: |frame| Send { frame };
     Expect from PatternText: |frame| Expect {
         frame,
+        or: Vec::new(),
         within: None,
         decode: Vec::new(),
         period: None,

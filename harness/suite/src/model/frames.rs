@@ -27,6 +27,8 @@ pub struct Send {
 pub struct Expect {
     /// What must come.
     pub frame: PatternText,
+    /// What may come in its place: other frames with this identifier, or `silence`.
+    pub or: Vec<Alternative>,
     /// How long after the last send; else what the description promises.
     pub within: Option<Duration>,
     /// What its bytes must mean.
@@ -39,6 +41,15 @@ pub struct Expect {
     pub judge: Judge,
     /// The name of this check, for documented deviations.
     pub check: Option<String>,
+}
+
+/// What may come in the place of a frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Alternative {
+    /// `silence`: nothing.
+    Silence,
+    /// Another frame.
+    Frame(PatternText),
 }
 
 /// Expects that nothing arrives. Short form: the duration alone.

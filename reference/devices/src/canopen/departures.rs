@@ -117,8 +117,6 @@ pub struct Departures {
 pub struct Manners {
     /// An empty place of 1003h is refused, and does not read 0.
     pub empty_places_refused: bool,
-    /// A refusal of 1005h to 1019h is the general 08000000h.
-    pub general_abort_codes: bool,
     /// The first SYNC comes at once.
     pub first_sync_at_once: bool,
     /// An EMCY takes 20 ms to be sent.

@@ -502,15 +502,6 @@ fn a_right_slave_may_do_otherwise() {
             ",
         ),
         (
-            "general-abort-codes",
-            "
-            wait 10 ms
-            < 70A#00
-            > 60A#2F19100001000000
-            < 58A#8019100000000008
-            ",
-        ),
-        (
             "first-sync-at-once",
             "
             wait 10 ms
