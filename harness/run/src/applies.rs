@@ -295,6 +295,8 @@ pub const fn feature_name(feature: Feature) -> &'static str {
         Feature::SyncCounter => "sync-counter",
         Feature::SyncProducer => "sync-producer",
         Feature::Emergency => "emergency",
+        Feature::TimeConsumer => "time-consumer",
+        Feature::TimeProducer => "time-producer",
         Feature::Lss => "lss",
         Feature::LssFastscan => "lss-fastscan",
         Feature::RemoteFrames => "remote-frames",

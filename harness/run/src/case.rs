@@ -165,7 +165,11 @@ impl Tester<'_> {
             match &step.value {
                 // Played from here, so that a failure points at the step inside.
                 Step::Repeat(repeat) => {
-                    for _ in 0..repeat.times {
+                    for time in 0..repeat.times {
+                        if !findings.may_go_on() {
+                            return;
+                        }
+                        self.count(repeat, time);
                         self.play_steps(&repeat.steps, part, number, findings, place);
                     }
                 }

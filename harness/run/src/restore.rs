@@ -23,7 +23,7 @@ impl Tester<'_> {
         entry.data_type.bits().map(|bits| bits.div_ceil(8) as usize)
     }
 
-    /// The value an object holds before it is written, if it can be read.
+    /// The value an object holds before it is written, if it can be read and is not known from before.
     pub(crate) fn value_before(
         &mut self,
         object: Multiplexer,
@@ -33,7 +33,8 @@ impl Tester<'_> {
             .dictionary
             .and_then(|dictionary| dictionary.entry(object.index, object.sub));
         let readable = entry.is_none_or(|entry| entry.access.readable());
-        if COMMANDS.contains(&object.index) || !readable || self.undo.is_closed() {
+        let is_known = self.undo.is_closed() || self.undo.remembers(object);
+        if COMMANDS.contains(&object.index) || !readable || is_known {
             return Ok(None);
         }
         match self.sdo_upload(object, self.device.timing.sdo_response)? {
@@ -62,7 +63,8 @@ impl Tester<'_> {
         object: Multiplexer,
         before: &Option<Vec<u8>>,
     ) -> Result<(), Stop> {
-        if before.is_some() || COMMANDS.contains(&object.index) || self.restores_by_steps {
+        let is_known = before.is_some() || self.undo.remembers(object);
+        if is_known || COMMANDS.contains(&object.index) || self.restores_by_steps {
             return Ok(());
         }
         Err(Stop::Bench(format!(

@@ -59,6 +59,12 @@ impl UndoStack {
         adds
     }
 
+    /// Whether the value of `object` before the case is known.
+    pub(crate) fn remembers(&self, object: Multiplexer) -> bool {
+        let known = |undo: &Undo| matches!(undo, Undo::Object(other, _) if *other == object);
+        self.entries.iter().any(known)
+    }
+
     /// Whether what is changed now is not put back in turn.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed
@@ -97,8 +103,7 @@ impl UndoStack {
 
     /// Puts `undo` back after everything else, unless its object is to be put back anyway.
     pub(crate) fn push_last(&mut self, object: Multiplexer, bytes: Vec<u8>) {
-        let known = |undo: &Undo| matches!(undo, Undo::Object(other, _) if *other == object);
-        if !self.entries.iter().any(known) {
+        if !self.remembers(object) {
             self.entries.insert(0, Undo::Object(object, bytes));
         }
     }

@@ -179,6 +179,10 @@ pub enum Feature {
     SyncProducer,
     /// Sends EMCY.
     Emergency,
+    /// Takes TIME.
+    TimeConsumer,
+    /// Produces TIME.
+    TimeProducer,
     /// LSS slave.
     Lss,
     /// LSS fastscan.

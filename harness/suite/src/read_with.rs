@@ -8,7 +8,7 @@ use serde::de::{Deserialize, Deserializer, Error, IgnoredAny};
 use crate::code;
 use crate::file::{DecodeFile, ModbusException};
 use crate::forms::OneOrMany;
-use crate::model::{Alternative, Decode, Located};
+use crate::model::{Decode, Located};
 use crate::problem::Wrong;
 use crate::scalar::{BitRate, Bytes, CanId, Time};
 
@@ -38,23 +38,9 @@ pub(crate) fn can_ids<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<
     Ok(ids.0.into_iter().map(|id| id.0).collect())
 }
 
-pub(crate) fn alternatives<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Vec<Alternative>, D::Error> {
-    OneOrMany::<Alternative>::deserialize(deserializer).map(|alternatives| alternatives.0)
-}
-
 pub(crate) fn exceptions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<u8>, D::Error> {
     let exceptions = OneOrMany::<ModbusException>::deserialize(deserializer)?;
     Ok(exceptions.0.into_iter().map(|code| code.0).collect())
-}
-
-/// Of a CAN frame, low byte first unless it says otherwise.
-pub(crate) fn decode_little_endian<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Vec<Decode>, D::Error> {
-    let decode = OneOrMany::<DecodeFile>::deserialize(deserializer)?;
-    Ok(decode.0.into_iter().map(|one| one.lower(false)).collect())
 }
 
 /// Of Modbus bytes, high byte first unless it says otherwise.

@@ -9,10 +9,11 @@ use fieldproof_can::{Frame, StandardId};
 use fieldproof_devices::{DeviceKind, Settings, kind, kinds};
 use fieldproof_link::{Instant, Outbox, Participant, Reception, Stimulus, Transmission};
 
-const SUITES: [&str; 14] = [
+const SUITES: [&str; 15] = [
     "boot-up",
     "cia402",
     "cia406",
+    "cob-id",
     "emergency",
     "error-control",
     "gateway",

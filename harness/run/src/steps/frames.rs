@@ -5,6 +5,7 @@ use std::time::Duration;
 use fieldproof_can::{Frame, Id, Pattern};
 use fieldproof_link::{Instant, Origin, PortIndex};
 use fieldproof_suite::model::{Alternative, Expect, ExpectSilence, Send};
+use fieldproof_suite::scalar::Tolerance;
 use fieldproof_wire::canopen::{Service, identify};
 use fieldproof_wire::describe::describe_frame;
 
@@ -41,14 +42,44 @@ impl Tester<'_> {
             return Ok(());
         }
         self.measure_response(name, &received, within)?;
-        for rule in &step.decode {
-            if let Some(object) = rule.object {
-                check_named_object(&frame, object.index, object.sub)?;
-            }
-            check_decode(rule, frame.bytes())?;
-        }
+        check_meaning(step, &frame)?;
         self.follow_received(&frame, received.at);
-        Ok(())
+        match step.period {
+            Some(limit) => self.expect_period(step, limit, received.at),
+            None => Ok(()),
+        }
+    }
+
+    /// Measures `count` periods from the frame that came at `last` on.
+    fn expect_period(
+        &mut self,
+        step: &Expect,
+        limit: Tolerance,
+        mut last: Instant,
+    ) -> Result<(), Stop> {
+        let pattern = &step.frame.0;
+        let patience = limit.nominal * 2 + limit.tolerance;
+        let mut periods = Vec::new();
+        while periods.len() < step.count as usize {
+            let within = (last + patience).since(self.session.last_sent().end);
+            let Some((frame, received)) = self.first_frame(pattern.id(), within)? else {
+                return Err(Stop::mismatch(
+                    format!("{} stops", show_id(pattern.id())),
+                    format!("the next within {}", show(patience)),
+                    "nothing",
+                    Came::Silence,
+                ));
+            };
+            if !pattern.matches(&frame) {
+                return Err(wrong_frame(pattern, &frame));
+            }
+            check_meaning(step, &frame)?;
+            periods.push(received.at.since(last));
+            last = received.at;
+        }
+        let port = self.can_port()?;
+        let uncertainty = self.session.uncertainty(port) * 2;
+        self.judge_periods("period", &periods, limit, step.judge, uncertainty)
     }
 
     /// What an expected frame tells of the node: a boot-up means that it is pre-operational.
@@ -162,6 +193,15 @@ pub(crate) const fn main_role(protocol: fieldproof_suite::model::Protocol) -> &'
         }
         fieldproof_suite::model::Protocol::Modbus => SERIAL,
     }
+}
+
+fn check_meaning(step: &Expect, frame: &Frame) -> Result<(), Stop> {
+    step.decode.iter().try_for_each(|rule| {
+        if let Some(object) = rule.object {
+            check_named_object(frame, object.index, object.sub)?;
+        }
+        check_decode(rule, frame.bytes())
+    })
 }
 
 /// A frame came under the right identifier that is not the one expected.

@@ -17,6 +17,7 @@ pub(crate) use nmt::wire_state;
 
 use crate::stop::Stop;
 use crate::tester::Tester;
+use crate::value::Actual;
 
 impl Tester<'_> {
     /// Carries out one step.
@@ -51,8 +52,17 @@ impl Tester<'_> {
 }
 
 impl Tester<'_> {
+    /// Puts the number of this time where the steps of a repeat find it.
+    pub(crate) fn count(&mut self, repeat: &Repeat, time: u32) {
+        if let Some(name) = &repeat.count_as {
+            let number = i128::from(repeat.from) + i128::from(time);
+            self.saved.insert(name.clone(), Actual::Number(number));
+        }
+    }
+
     fn repeat(&mut self, repeat: &Repeat) -> Result<(), Stop> {
-        for _ in 0..repeat.times {
+        for time in 0..repeat.times {
+            self.count(repeat, time);
             repeat
                 .steps
                 .iter()

@@ -112,7 +112,9 @@ impl Tester<'_> {
         code: AbortCode,
     ) -> Result<(), Stop> {
         match &step.expect {
-            ReadExpectation::Abort(abort) => self.check_abort(object, abort, code),
+            ReadExpectation::Abort(abort) | ReadExpectation::OneOfOrAbort(_, abort) => {
+                self.check_abort(object, abort, code)
+            }
             // A value is recorded whatever it is, so its absence is recorded as well.
             ReadExpectation::Any if step.observe.is_some() => {
                 let words = step.observe.as_deref().unwrap_or_default();
@@ -266,7 +268,7 @@ impl Tester<'_> {
                     }),
                 }
             }
-            ReadExpectation::OneOf(values) => {
+            ReadExpectation::OneOf(values) | ReadExpectation::OneOfOrAbort(values, _) => {
                 let expected: Vec<Actual> = values
                     .iter()
                     .map(|value| resolve(value, None, saved))

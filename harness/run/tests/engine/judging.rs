@@ -373,6 +373,116 @@ fn a_repetition_ends_with_the_first_time_that_does_not_pass_and_points_inside() 
 }
 
 #[test]
+fn a_repetition_counts() {
+    let mut held = 6_u8;
+    let device = Scripted::new(move |request: &Frame| {
+        if *request != frame("601#4000200000000000") {
+            return Vec::new();
+        }
+        held += 1;
+        // The third time it should be 9.
+        let value = if held == 9 { 8 } else { held };
+        vec![soon(&format!("581#43002000{value:02X}000000"))]
+    });
+    let played = Setup::default().play(
+        device,
+        "
+  - case: counted
+    title: 2000h holds one more each time
+    cite: [book]
+    steps:
+      - repeat:
+          times: 5
+          count-as: number
+          from: 7
+          steps:
+            - sdo-read: {object: \"2000:00\", as: u32, expect: \"{number}\"}
+",
+    );
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "2000h:00 holds another value")
+    );
+    let failure = &played.case().failures[0];
+    assert_eq!(
+        (failure.expected.as_str(), failure.actual.as_str()),
+        ("9", "8")
+    );
+}
+
+#[test]
+fn a_value_or_a_refusal_is_expected() {
+    let case = READ.replace(
+        "expect: 5",
+        "expect: {one-of: [0, 5], abort: [0x08000024, 0x08000000]}",
+    );
+    for (answer, verdict) in [
+        ("581#4300200005000000", (Verdict::Pass, "")),
+        ("581#8000200024000008", (Verdict::Pass, "")),
+        (
+            "581#4300200006000000",
+            (Verdict::Fail, "2000h:00 holds another value"),
+        ),
+        (
+            "581#8000200022000008",
+            (Verdict::Fail, "2000h:00 is refused with another abort code"),
+        ),
+    ] {
+        let device = Scripted::new(move |request: &Frame| {
+            if *request == frame("601#4000200000000000") {
+                vec![soon(answer)]
+            } else {
+                Answers::new()
+            }
+        });
+        assert_eq!(Setup::default().play(device, &case).verdict(), verdict);
+    }
+}
+
+#[test]
+fn periods_of_frames_are_measured() {
+    const EXPECT: &str = "
+  - case: periods
+    title: SYNC comes every 10 ms
+    cite: [book]
+    steps:
+      - send: \"000#0100\"
+      - expect: {frame: \"080#\", within: 15 ms, period: 10 ms ± 10 %, count: 3}
+";
+    let sent_at = |times: [u64; 4], last: &'static str| {
+        Scripted::new(move |request: &Frame| {
+            if *request != frame("000#0100") {
+                return Answers::new();
+            }
+            let mut answers: Answers = times
+                .iter()
+                .map(|time| (Duration::from_millis(*time), frame("080#")))
+                .collect();
+            answers[3].1 = frame(last);
+            answers
+        })
+    };
+    let verdict = |times, last| {
+        let played = Setup::default().play(sent_at(times, last), EXPECT);
+        let (verdict, words) = played.verdict();
+        (verdict, words.to_owned())
+    };
+    assert_eq!(
+        verdict([10, 20, 30, 40], "080#"),
+        (Verdict::Pass, String::new())
+    );
+    assert_eq!(verdict([10, 20, 35, 45], "080#").0, Verdict::Fail);
+    assert_eq!(
+        verdict([10, 20, 30, 40], "080#01"),
+        (Verdict::Fail, "another frame came than expected".to_owned())
+    );
+    assert_eq!(
+        verdict([10, 20, 30, 90], "080#"),
+        (Verdict::Fail, "080h stops".to_owned())
+    );
+}
+
+#[test]
 fn an_answer_that_leaves_its_size_open_is_read_with_the_size_of_the_object() {
     let played = Setup::default().play(
         answering(&["581#4200200005000000"]),

@@ -8,12 +8,12 @@ use serde::Deserialize;
 use super::pdo::{CarriedFile, carried, pdo_name};
 use crate::code;
 use crate::forms::OneOrMany;
-use crate::model::{Decode, ExpectTpdo, Judge, NmtAddress, Sync, ValueType};
+use crate::model::{Alternative, Decode, Expect, ExpectTpdo, Judge, NmtAddress, Sync, ValueType};
 use crate::problem::Wrong;
 use crate::read_with::{optional_pdo_number, optional_time, ten};
 use crate::scalar::{
-    BytePatternText, CanId, Decimal, ObjectAddress, Scale, Text, Time, Tolerance, read_as_text,
-    whole_number,
+    BytePatternText, CanId, Decimal, ObjectAddress, PatternText, Scale, Text, Time, Tolerance,
+    read_as_text, whole_number,
 };
 
 /// What some bytes of a frame must mean: taken as a number, scaled, compared.
@@ -119,6 +119,72 @@ impl TryFrom<SyncFile> for Sync {
             )),
         }
     }
+}
+
+/// Expects a CAN frame. Short form: the frame alone.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Expect")]
+pub(crate) struct ExpectFile {
+    /// What must come.
+    frame: PatternText,
+    /// What may come in its place: other frames with this identifier, or `silence`.
+    #[serde(default)]
+    or: OneOrMany<Alternative>,
+    /// How long after the last send; else what the description promises.
+    #[serde(default, deserialize_with = "optional_time")]
+    #[schemars(with = "Option<Time>")]
+    within: Option<Duration>,
+    /// What its bytes must mean.
+    #[serde(default)]
+    decode: OneOrMany<DecodeFile>,
+    /// If given, `count` periods between this and the following ones are measured.
+    #[serde(default)]
+    period: Option<Tolerance>,
+    /// How many periods; 10 where nothing is said.
+    #[serde(default)]
+    count: Option<u32>,
+    /// What of the periods must keep the limit.
+    #[serde(default)]
+    judge: Option<Judge>,
+    /// The name of this check, for documented deviations.
+    #[serde(default)]
+    check: Option<String>,
+}
+
+impl TryFrom<ExpectFile> for Expect {
+    type Error = Wrong;
+
+    fn try_from(file: ExpectFile) -> Result<Expect, Wrong> {
+        about_a_period(file.period, file.count, file.judge)?;
+        let decode = file.decode.0.into_iter().map(|one| one.lower(false));
+        Ok(Expect {
+            frame: file.frame,
+            or: file.or.0,
+            within: file.within,
+            decode: decode.collect(),
+            period: file.period,
+            count: file.count.unwrap_or_else(ten),
+            judge: file.judge.unwrap_or_default(),
+            check: file.check,
+        })
+    }
+}
+
+/// `count` and `judge` say nothing without a period.
+fn about_a_period(
+    period: Option<Tolerance>,
+    count: Option<u32>,
+    judge: Option<Judge>,
+) -> Result<(), Wrong> {
+    if period.is_none() && (count.is_some() || judge.is_some()) {
+        return Err(Wrong::new(
+            code::KEYS_TOGETHER,
+            "`count` and `judge` are about a `period`, and there is none",
+            "needs `period`",
+        ));
+    }
+    Ok(())
 }
 
 /// Expects a transmit PDO.

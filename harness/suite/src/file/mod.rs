@@ -23,6 +23,7 @@ pub(crate) use stimulate::*;
 
 crate::forms::schema_of!(
     crate::model::Sync: SyncFile,
+    crate::model::Expect: ExpectFile,
     crate::model::ExpectTpdo: ExpectTpdoFile,
     crate::model::SendRpdo: SendRpdoFile,
     crate::model::SdoRead: SdoReadFile,

@@ -96,7 +96,7 @@ pub(crate) struct ReadExpectMap {
     /// What the description claims of the identity; the case is skipped where it claims nothing.
     #[serde(default)]
     claimed: Option<Located<Claim>>,
-    /// The abort codes that pass.
+    /// The abort codes that pass; beside `one-of`, a refusal with one of them passes as well.
     #[serde(default)]
     abort: Option<OneOrMany<u32>>,
     /// The one code that passes under `--strict`.
@@ -161,6 +161,10 @@ impl ReadExpectFile {
                     to: high,
                 })
             }
+            (Some(values), None, None, Some(abort), None) if !values.is_empty() => {
+                let values = values.iter().map(located).collect::<Result<_, _>>()?;
+                refusal(abort, None).map(|abort| ReadExpectation::OneOfOrAbort(values, abort))
+            }
             (None, None, None, Some(abort), strict) => {
                 refusal(abort, strict).map(ReadExpectation::Abort)
             }
@@ -173,7 +177,7 @@ fn not_one_expectation() -> Wrong {
     Wrong::new(
         code::KEYS_TOGETHER,
         "this is not one expectation",
-        "expected `one-of`, or `other-than`, or `from` and `to`, or `claimed`, or `abort` with `strict` if need be",
+        "expected `one-of`, alone or with `abort`, or `other-than`, or `from` and `to`, or `claimed`, or `abort` with `strict` if need be",
     )
 }
 

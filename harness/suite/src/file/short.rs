@@ -2,8 +2,8 @@
 
 use crate::forms::TwoForms;
 use crate::model::{
-    Crc, Expect, ExpectBootUp, ExpectBytes, ExpectSilence, Nmt, NmtAddress, NmtCommand, Send,
-    SendBytes, Sync,
+    Crc, Expect, ExpectBootUp, ExpectBytes, ExpectSilence, Judge, Nmt, NmtAddress, NmtCommand,
+    Send, SendBytes, Sync,
 };
 use crate::scalar::{BytePatternText, Bytes, FrameText, PatternText, Time};
 
@@ -32,6 +32,9 @@ short_form! {
         or: Vec::new(),
         within: None,
         decode: Vec::new(),
+        period: None,
+        count: 0,
+        judge: Judge::default(),
         check: None,
     };
     ExpectSilence from Time: |time| ExpectSilence {

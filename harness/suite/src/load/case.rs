@@ -162,8 +162,9 @@ impl<'a> Steps<'_, 'a> {
         for step in steps.map(Node::elements).unwrap_or_default() {
             let inside = step.entries().iter().map(|entry| &entry.value);
             for value in inside {
-                let name = value.get("save").and_then(Node::text);
-                self.scope.saved_later.extend(name.map(str::to_owned));
+                let names = ["save", "count-as"].map(|key| value.get(key).and_then(Node::text));
+                let names = names.into_iter().flatten().map(str::to_owned);
+                self.scope.saved_later.extend(names);
                 self.expect_saves(value.get("steps"));
             }
         }
@@ -202,10 +203,10 @@ impl<'a> Steps<'_, 'a> {
         let at = entry.key.at;
         match Step::deserialize(Reader::new(node, self.scope, at)) {
             Ok(mut value) => {
+                self.save(&value, &entry.value);
                 if let Step::Repeat(repeat) = &mut value {
                     repeat.steps = self.read(entry.value.get("steps"));
                 }
-                self.save(&value, &entry.value);
                 Some(Located { value, at })
             }
             Err(ReadError(mut problem)) => {
@@ -223,13 +224,14 @@ impl<'a> Steps<'_, 'a> {
     }
 
     fn save(&mut self, step: &Step, inside: &Node) {
-        let name = match step {
-            Step::SdoRead(read) => &read.save,
-            Step::Modbus(modbus) => &modbus.save,
+        let (name, key) = match step {
+            Step::SdoRead(read) => (&read.save, "save"),
+            Step::Modbus(modbus) => (&modbus.save, "save"),
+            Step::Repeat(repeat) => (&repeat.count_as, "count-as"),
             _ => return,
         };
         let Some(name) = name else { return };
-        let at = inside.get("save").map_or(inside.at, |node| node.at);
+        let at = inside.get(key).map_or(inside.at, |node| node.at);
         let is_column = self.scope.row.is_some_and(|row| row.get(name).is_some());
         if !is_name(name) || is_column || crate::expand::BENCH_NAMES.contains(&name.as_str()) {
             let problem = Problem::new(

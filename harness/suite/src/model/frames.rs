@@ -5,13 +5,12 @@ use std::time::Duration;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::file::DecodeFile;
+use super::Judge;
+use crate::file::{DecodeFile, ExpectFile};
 use crate::forms::OneOrMany;
-use crate::read_with::{
-    alternatives, can_ids, decode_big_endian, decode_little_endian, optional_time, time,
-};
+use crate::read_with::{can_ids, decode_big_endian, optional_time, time};
 use crate::scalar::{
-    BytePatternText, Bytes, CanId, Decimal, FrameText, ObjectAddress, PatternText, Time,
+    BytePatternText, Bytes, CanId, Decimal, FrameText, ObjectAddress, PatternText, Time, Tolerance,
 };
 
 /// Sends a CAN frame. Short form: the frame alone.
@@ -23,25 +22,24 @@ pub struct Send {
 }
 
 /// Expects a CAN frame. Short form: the frame alone.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "ExpectFile")]
 pub struct Expect {
     /// What must come.
     pub frame: PatternText,
     /// What may come in its place: other frames with this identifier, or `silence`.
-    #[serde(default, deserialize_with = "alternatives")]
-    #[schemars(with = "OneOrMany<Alternative>")]
     pub or: Vec<Alternative>,
     /// How long after the last send; else what the description promises.
-    #[serde(default, deserialize_with = "optional_time")]
-    #[schemars(with = "Option<Time>")]
     pub within: Option<Duration>,
     /// What its bytes must mean.
-    #[serde(default, deserialize_with = "decode_little_endian")]
-    #[schemars(with = "OneOrMany<DecodeFile>")]
     pub decode: Vec<Decode>,
+    /// If given, `count` periods between this and the following ones are measured.
+    pub period: Option<Tolerance>,
+    /// How many periods.
+    pub count: u32,
+    /// What of the periods must keep the limit.
+    pub judge: Judge,
     /// The name of this check, for documented deviations.
-    #[serde(default)]
     pub check: Option<String>,
 }
 

@@ -120,6 +120,8 @@ pub enum ReadExpectation {
     Value(Value),
     /// One of these: `expect: {one-of: [1, 2]}`.
     OneOf(Vec<Value>),
+    /// One of these, or a refusal: `expect: {one-of: [0], abort: [0x08000024]}`.
+    OneOfOrAbort(Vec<Value>, AbortExpectation),
     /// Any but this one: `expect: {other-than: "{stopped}"}`.
     OtherThan(Value),
     /// Between, limits included: `expect: {from: 5, to: 10}`.

@@ -111,6 +111,12 @@ pub struct Repeat {
     #[serde(deserialize_with = "times")]
     #[schemars(range(min = 1, max = 1_000_000))]
     pub times: u32,
+    /// The name under which a number stands that is one higher each time.
+    #[serde(default)]
+    pub count_as: Option<String>,
+    /// What that number is the first time.
+    #[serde(default)]
+    pub from: u32,
     /// What is played each time.
     // Read apart from the rest, so that every wrong one is found.
     #[serde(deserialize_with = "read_later")]

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, ObjectFault, OrdinaryTransfer, PdoBehaviour};
+use super::{BlockTransfer, Departures, Manners, ObjectFault, OrdinaryTransfer, PdoBehaviour};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -24,6 +24,10 @@ pub struct Behaviour {
     pub block: BlockTransfer,
     /// PDOs.
     pub pdo: PdoBehaviour,
+    /// What else a right slave may do one way or the other.
+    pub manners: Manners,
+    /// Departures from the rules of SYNC, EMCY, TIME, storing and COB-IDs.
+    pub departs: Departures,
     /// Expedited and segmented SDO transfer.
     pub sdo: OrdinaryTransfer,
     /// Abort codes, and what is said in their place.
@@ -209,6 +213,8 @@ impl Default for Behaviour {
             heartbeat_on_write: false,
             block: BlockTransfer::default(),
             pdo: PdoBehaviour::default(),
+            manners: Manners::default(),
+            departs: Departures::default(),
             sdo: OrdinaryTransfer::default(),
             abort_codes: &[],
             object_fault: None,

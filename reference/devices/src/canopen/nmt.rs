@@ -42,8 +42,14 @@ impl State {
             (_, Service::BootUp | Service::ErrorControl) => true,
             (State::Stopped, Service::Sdo) => behaviour.sdo_in_stopped,
             (State::Stopped, Service::Pdo) => behaviour.pdo_in_stopped,
-            (State::Stopped, _) => false,
+            (State::Stopped, Service::Sync) => behaviour.departs.sync_in_stopped,
+            (State::Stopped, Service::Emergency) => behaviour.departs.emergency_in_stopped,
+            (State::Stopped, Service::Time) => behaviour.departs.time_in_stopped,
             (State::PreOperational, Service::Pdo) => behaviour.pdo_in_pre_operational,
+            (State::PreOperational, Service::Sync) => !behaviour.departs.sync_in_operational_only,
+            (State::PreOperational, Service::Emergency) => {
+                !behaviour.departs.emergency_in_operational_only
+            }
             (State::PreOperational | State::Operational, _) => true,
         }
     }

@@ -227,7 +227,7 @@ impl Slave {
         let mapped: u32 = rpdo.fields.iter().map(|field| field.bits).sum();
         let length = mapped.div_ceil(8) as usize;
         if frame.len() < length && self.behaviour.pdo.short_passed_over {
-            if self.behaviour.pdo.short_reported {
+            if self.behaviour.pdo.short_reported && !self.behaviour.departs.short_pdo_unreported {
                 self.report(now, super::emergency::PDO_TOO_SHORT);
             }
             return;
@@ -235,7 +235,9 @@ impl Slave {
         if frame.len() > length && !self.behaviour.pdo.long_taken {
             return;
         }
-        let reported = frame.len() > length && self.behaviour.pdo.long_reported;
+        let reported = frame.len() > length
+            && self.profile.complete
+            && !self.behaviour.manners.long_pdo_unreported;
         let mut data = [0; 8];
         data.iter_mut()
             .zip(frame.bytes())

@@ -5,8 +5,6 @@ use super::Abort;
 /// How a slave treats its PDOs. The default conforms to CiA 301.
 #[derive(Debug, Clone)]
 pub struct PdoBehaviour {
-    /// An RPDO with more bytes than its mapping has is reported (8220h); it need not be.
-    pub long_reported: bool,
     /// The abort code for what cannot be mapped.
     pub abort_not_mappable: u32,
     /// The abort code for a parameter that must stay as it is for now.
@@ -142,7 +140,6 @@ impl PdoBehaviour {
 impl Default for PdoBehaviour {
     fn default() -> PdoBehaviour {
         PdoBehaviour {
-            long_reported: false,
             abort_not_mappable: Abort::NOT_MAPPABLE.0,
             abort_not_now: Abort::DEVICE_STATE.0,
             abort_too_long: Abort::MAPPING_TOO_LONG.0,

@@ -1,5 +1,6 @@
 //! What may be written to PDO parameters, and when.
 
+use super::cob_id::is_restricted;
 use super::objects::Objects;
 use super::pdo::{
     EVENT_DRIVEN, EXTENDED, INVALID, MappingEntry, NO_REMOTE, ON_REMOTE_FRAME, RPDO_COMMUNICATION,
@@ -129,15 +130,7 @@ impl Rules<'_> {
     /// never taken, nor one of 29 bits.
     fn cob_id(&self, address: Address, value: u32) -> Result<bool, Abort> {
         let identifier = value & !(INVALID | NO_REMOTE);
-        let restricted = matches!(
-            identifier,
-            0x000..=0x07F
-                | 0x101..=0x180
-                | 0x581..=0x5FF
-                | 0x601..=0x67F
-                | 0x6E0..=0x6FF
-                | 0x701..
-        );
+        let restricted = is_restricted(identifier, &self.behaviour.departs);
         if identifier & EXTENDED != 0 && !self.behaviour.pdo.extended_identifier_refused {
             return Ok(false);
         }

@@ -1,13 +1,15 @@
 //! Services that only some slaves have, at a reset, and the SDO servers beside the default one.
 
+use fieldproof_can::{Frame, Id};
 use fieldproof_link::Instant;
 
 use super::consumers::Consumers;
 use super::emergency::Errors;
-use super::pdo;
+use super::queue::identifier;
 use super::sdo::Server;
 use super::time::Clock;
 use super::{Address, Slave};
+use super::{emergency, pdo, sync, time};
 
 /// The parameters of the SDO servers beside the default one.
 pub(super) const ADDITIONAL_SERVERS: std::ops::RangeInclusive<u16> = 0x1201..=0x127F;
@@ -38,6 +40,40 @@ impl Slave {
             self.consumers = Consumers::read(&self.objects);
             self.read_servers();
         }
+    }
+
+    /// COB-IDs that a wrong slave begins with.
+    pub(super) fn lose_identifiers(&mut self) {
+        let departs = &self.behaviour.departs;
+        let lost = [
+            (departs.sync_identifier_lost, sync::COB_ID, 0),
+            (departs.time_identifier_lost, time::COB_ID, 0),
+            (
+                departs.emergency_identifier_without_node,
+                emergency::COB_ID,
+                0x80,
+            ),
+        ];
+        for (_, address, value) in lost.into_iter().filter(|(lost, ..)| *lost) {
+            self.objects.set_number(address, value);
+        }
+    }
+
+    /// `frame` with 11 bits of its identifier, where a slave sees no others.
+    pub(super) fn cut(&self, frame: &Frame) -> Option<Frame> {
+        let Id::Extended(id) = frame.id() else {
+            return None;
+        };
+        if !self.behaviour.departs.extended_frames_cut || frame.is_remote() {
+            return None;
+        }
+        let low = u16::try_from(id.raw() & 0x7FF).ok()?;
+        Frame::data(identifier(low), frame.bytes())
+    }
+
+    /// Whether a remote frame counts as SYNC.
+    pub(super) fn takes_for_sync(&self, raw: u16) -> bool {
+        self.behaviour.departs.sync_by_remote_frame && self.sync.identifier == Some(raw)
     }
 
     /// Reads what servers there are; each works where both its COB-IDs are valid.

@@ -138,6 +138,9 @@ impl Slave {
         frame: &Frame,
         application: &mut dyn Application,
     ) {
+        if let Some(cut) = self.cut(frame) {
+            return self.receive(now, &cut, application);
+        }
         if !self.powered || self.boot_at.is_some() {
             return;
         }
@@ -163,7 +166,7 @@ impl Slave {
             }
         } else if raw == 0x700 + node && frame.is_remote() {
             self.guard(now);
-        } else if frame.is_remote() {
+        } else if frame.is_remote() && !self.takes_for_sync(raw) {
             self.fetch_tpdo(now, raw);
         } else if self.sync.identifier == Some(raw) {
             self.receive_sync(now, frame, application);
@@ -266,12 +269,16 @@ impl Slave {
         } else {
             self.boot_at = None;
             self.state = State::Initialising;
+            if self.behaviour.departs.stores_in_ram {
+                self.memory.values.clear();
+            }
         }
     }
 
     fn command(&mut self, now: Instant, command: Command, application: &mut dyn Application) {
         match command {
             Command::Enter(state) => self.enter(now, state),
+            _ if self.behaviour.departs.parameters_outlive_reset => self.initialise(now),
             Command::ResetNode => self.reset_node(now, application),
             Command::ResetCommunication => self.reset_communication(now),
         }
@@ -281,7 +288,7 @@ impl Slave {
         if state == self.state {
             return;
         }
-        if self.state == State::Stopped {
+        if self.state == State::Stopped && !self.behaviour.departs.counter_outlives_stopped {
             self.sync.counter = 0;
         }
         self.state = state;
@@ -352,6 +359,7 @@ impl Slave {
     fn initialise(&mut self, now: Instant) {
         self.show_configuration();
         self.spoil_pdo_parameters();
+        self.lose_identifiers();
         for (sub, number) in (1..).zip(self.behaviour.identity.into_iter().flatten()) {
             let address = Address::new(IDENTITY, sub);
             self.objects.set_number(address, i64::from(number));
@@ -382,10 +390,8 @@ impl Slave {
         }
         self.enter(now, State::PreOperational);
         self.start_error_control(now);
-        self.reconfigure_sync(now);
-        if self.profile.complete {
-            self.reconfigure_time(now);
-        }
+        self.start_sync(now);
+        self.reconfigure_time(now);
     }
 
     pub(super) fn has_node(&self) -> bool {

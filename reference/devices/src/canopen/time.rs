@@ -6,13 +6,14 @@ use fieldproof_can::Frame;
 use fieldproof_link::Instant;
 
 use super::queue::{Service, identifier};
-use super::{Address, Application, Slave};
+use super::{Abort, Address, Application, Departures, Profile, Slave, cob_id};
 
 pub(super) const COB_ID: Address = Address::new(0x1012, 0);
 /// Bit 31 of 1012h: the device takes TIME.
 const CONSUMES: u32 = 1 << 31;
 /// Bit 30 of 1012h: the device produces TIME.
 const PRODUCES: u32 = 1 << 30;
+const DEFAULT_IDENTIFIER: u16 = 0x100;
 /// CiA 301 sets no period.
 const PERIOD: Duration = Duration::from_secs(1);
 const MILLISECONDS_A_DAY: u64 = 24 * 60 * 60 * 1000;
@@ -36,8 +37,24 @@ pub(super) struct Clock {
     set: (Instant, TimeOfDay),
 }
 
+/// Whether `value` may be written to 1012h, which holds `present`.
+///
+/// # Errors
+/// Bits 30 and 31 in a device that neither takes nor produces TIME; the rules of every COB-ID.
+pub(super) fn check(
+    profile: &Profile,
+    departs: &Departures,
+    (present, value): (u32, u32),
+) -> Result<(), Abort> {
+    if !profile.complete && in_use(value) {
+        return Err(Abort::INVALID_VALUE);
+    }
+    let protected = !departs.time_identifier_unprotected;
+    cob_id::check((present, value), in_use, protected, departs)
+}
+
 /// Whether the COB-ID is in use.
-pub(super) fn in_use(cob_id: u32) -> bool {
+fn in_use(cob_id: u32) -> bool {
     cob_id & (CONSUMES | PRODUCES) != 0
 }
 
@@ -56,10 +73,22 @@ fn later(time: TimeOfDay, by: Duration) -> TimeOfDay {
 impl Slave {
     /// Reads 1012h again.
     pub(super) fn reconfigure_time(&mut self, now: Instant) {
-        let cob_id = self.objects.number(COB_ID).unwrap_or(0);
-        self.clock.identifier = u16::try_from(cob_id & 0x7FF).ok();
-        self.clock.consumes = cob_id & CONSUMES != 0;
-        let produces = cob_id & PRODUCES != 0;
+        let departs = &self.behaviour.departs;
+        let Some(cob_id) = self
+            .objects
+            .number(COB_ID)
+            .filter(|_| self.profile.complete)
+        else {
+            return;
+        };
+        self.clock.identifier = if departs.time_identifier_fixed {
+            Some(DEFAULT_IDENTIFIER)
+        } else {
+            u16::try_from(cob_id & 0x7FF).ok()
+        };
+        self.clock.consumes = cob_id & CONSUMES != 0 || departs.time_always_taken;
+        let goes_on = departs.time_not_stopped && self.clock.next.is_some();
+        let produces = cob_id & PRODUCES != 0 || goes_on;
         self.clock.next = produces.then(|| self.clock.next.unwrap_or(now + PERIOD));
     }
 
@@ -74,9 +103,13 @@ impl Slave {
         frame: &Frame,
         application: &mut dyn Application,
     ) {
-        let Ok(time) = TimeOfDay::try_from(frame.bytes()) else {
+        let mut time = TimeOfDay::default();
+        let unchecked = self.behaviour.departs.time_length_unchecked;
+        if frame.len() != time.len() && !unchecked {
             return;
-        };
+        }
+        let places = time.iter_mut().zip(frame.bytes());
+        places.for_each(|(to, from)| *to = *from);
         if !self.state.permits(Service::Time, &self.behaviour) || !self.behaviour.time_taken {
             return;
         }
@@ -106,9 +139,20 @@ impl Slave {
             return;
         }
         let (set_at, time) = self.clock.set;
-        let time = later(time, now.since(set_at));
+        let departs = &self.behaviour.departs;
+        let passed = now.since(set_at);
+        let passed = if departs.time_stands_still {
+            Duration::ZERO
+        } else {
+            passed
+        };
+        let mut bytes = [0; 8];
+        let length = if departs.time_of_eight_bytes { 8 } else { 6 };
+        let places = bytes.iter_mut().zip(later(time, passed));
+        places.for_each(|(to, from)| *to = from);
         let raw = self.clock.identifier.unwrap_or(0);
-        if let Some(frame) = Frame::data(identifier(raw), &time) {
+        let bytes = bytes.get(..length).unwrap_or(&bytes);
+        if let Some(frame) = Frame::data(identifier(raw), bytes) {
             self.queue.push(now, Service::Time, frame);
         }
     }

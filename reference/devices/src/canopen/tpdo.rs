@@ -264,8 +264,10 @@ impl Slave {
                 due
             };
             if leaves {
-                let at = now + self.turnaround();
-                self.transmit(number, at);
+                let after = self.turnaround();
+                if !self.window_has_passed(after) {
+                    self.transmit(number, now + after);
+                }
                 if !self.behaviour.pdo.every_due_sent {
                     return;
                 }

@@ -82,12 +82,6 @@ pub(crate) const SLOW: Variant = Variant {
     apply: |behaviour| behaviour.canopen.response_us = 10_000..15_000,
 };
 
-pub(crate) const LONG_PDO_REPORTED: Variant = Variant {
-    name: "long-pdo-reported",
-    words: "takes the first bytes of an RPDO that is too long, and reports it (8220h): CiA 301 leaves that open",
-    apply: |behaviour| behaviour.canopen.pdo.long_reported = true,
-};
-
 pub(crate) const OTHER_PDO_ABORTS: Variant = Variant {
     name: "other-pdo-aborts",
     words: "refuses PDO parameters with other codes that fit: 06010000h and 06020000h",
@@ -96,4 +90,34 @@ pub(crate) const OTHER_PDO_ABORTS: Variant = Variant {
         behaviour.canopen.pdo.abort_not_mappable = 0x0602_0000;
         behaviour.canopen.pdo.abort_too_long = 0x0604_0041;
     },
+};
+
+pub(crate) const EMPTY_PLACES_READ_0: Variant = Variant {
+    name: "empty-places-read-0",
+    words: "reads 0 in a place of 1003h that holds no error, where others refuse",
+    apply: |behaviour| behaviour.canopen.manners.empty_places_refused = false,
+};
+
+pub(crate) const FIRST_SYNC_AT_ONCE: Variant = Variant {
+    name: "first-sync-at-once",
+    words: "produces its first SYNC at once, not after one period: CiA 301 has it within a period",
+    apply: |behaviour| behaviour.canopen.manners.first_sync_at_once = true,
+};
+
+pub(crate) const EMERGENCY_LATE: Variant = Variant {
+    name: "emergency-late",
+    words: "sends an EMCY 20 ms after its error: CiA 301 sets no time",
+    apply: |behaviour| behaviour.canopen.manners.emergency_late = true,
+};
+
+pub(crate) const PASSING_ERRORS_SHOWN: Variant = Variant {
+    name: "passing-errors-shown",
+    words: "shows a communication error in the EMCY for a PDO of the wrong length, though 1001h has forgotten it",
+    apply: |behaviour| behaviour.canopen.manners.passing_errors_shown = true,
+};
+
+pub(crate) const LONG_PDO_UNREPORTED: Variant = Variant {
+    name: "long-pdo-unreported",
+    words: "uses the first bytes of an RPDO that is too long without an EMCY: 8220h is optional",
+    apply: |behaviour| behaviour.canopen.manners.long_pdo_unreported = true,
 };

@@ -4,16 +4,13 @@ use fieldproof_link::Instant;
 
 use super::emergency::ERROR_HISTORY;
 use super::error_control::{GUARD_TIME, LIFE_TIME_FACTOR, PRODUCER_TIME};
-use super::memory;
 use super::pdo;
 use super::pdo_rules::{self, Parameter, Rules};
 use super::services::ADDITIONAL_SERVERS;
 use super::sync;
 use super::{Abort, Address, Answer, Application, Slave};
-use super::{cob_id, consumers, emergency, time};
+use super::{cob_id, consumers, emergency, memory, time};
 
-const STORE: u16 = 0x1010;
-const RESTORE: u16 = 0x1011;
 /// Software position limits of CiA 402: the lowest position at sub-index 1, the highest at 2.
 const POSITION_LIMITS: u16 = 0x607D;
 
@@ -123,22 +120,20 @@ impl Slave {
                 return Ok(false);
             }
         } else if address == sync::COB_ID {
-            sync::check(
-                &self.profile,
-                self.objects.number(address).unwrap_or(0),
-                number,
-            )?;
+            let present = self.objects.number(address).unwrap_or(0);
+            sync::check(&self.profile, &self.behaviour.departs, present, number)?;
         } else if index == consumers::CONSUMER_TIME && address.sub() != 0 {
             consumers::check(&self.objects, address, number)?;
         } else if index == POSITION_LIMITS {
             self.check_position_limits(address, number)?;
         } else if index == ERROR_HISTORY {
-            if number != 0 {
+            if number == 0 {
+                self.forget_errors();
+            } else if !self.behaviour.departs.history_count_taken {
                 return Err(Abort::INVALID_VALUE);
             }
-            self.forget_errors();
             return Ok(false);
-        } else if matches!(index, STORE | RESTORE) && address.sub() != 0 {
+        } else if matches!(index, memory::STORE | memory::RESTORE) && address.sub() != 0 {
             self.store_or_restore(address, value)?;
             return Ok(false);
         } else if Some(address) == self.profile.node_object {
@@ -151,9 +146,7 @@ impl Slave {
                 return Err(Abort::INVALID_VALUE);
             }
         }
-        if self.profile.complete {
-            self.service_permitted(address, number)?;
-        }
+        self.service_permitted(address, number)?;
         Ok(true)
     }
 
@@ -176,47 +169,20 @@ impl Slave {
     fn service_permitted(&self, address: Address, value: u32) -> Result<(), Abort> {
         let number = |address| self.objects.number(address).unwrap_or(0);
         let valid = |cob_id| cob_id & pdo::INVALID == 0;
+        let departs = &self.behaviour.departs;
+        let written = (number(address), value);
         match (address.index(), address.sub()) {
-            _ if address == sync::OVERFLOW => sync::check_overflow(number(sync::CYCLE), value),
-            _ if address == emergency::COB_ID => cob_id::check(number(address), value, valid),
-            _ if address == time::COB_ID => cob_id::check(number(address), value, time::in_use),
-            (0x1201..=0x127F, 1 | 2) => cob_id::check(number(address), value, valid),
+            _ if address == sync::OVERFLOW => {
+                sync::check_overflow(departs, number(sync::CYCLE), value)
+            }
+            _ if address == emergency::COB_ID => {
+                let protected = !departs.emergency_identifier_unprotected;
+                cob_id::check(written, valid, protected, departs)
+            }
+            _ if address == time::COB_ID => time::check(&self.profile, departs, written),
+            (0x1201..=0x127F, 1 | 2) => cob_id::check(written, valid, true, departs),
             _ => Ok(()),
         }
-    }
-
-    /// 1010h takes `save`, 1011h `load`; both only where bit 0 of the value says that they can.
-    fn store_or_restore(&mut self, address: Address, value: &[u8]) -> Result<(), Abort> {
-        let able = self.objects.number(address).unwrap_or(0) & 1 != 0;
-        let signature: &[u8] = if address.index() == STORE {
-            b"save"
-        } else {
-            b"load"
-        };
-        let any = address.index() == STORE && self.behaviour.stores_without_signature;
-        if !able || (value != signature && !any) {
-            return Err(Abort::CANNOT_STORE);
-        }
-        let does = if address.index() == STORE {
-            self.behaviour.stores
-        } else {
-            self.behaviour.restores
-        };
-        if !does {
-            return Ok(());
-        }
-        let group = memory::group(address.sub());
-        self.memory
-            .values
-            .retain(|saved, _| !group.contains(&saved.index()));
-        if address.index() == STORE {
-            let mut differing = self.objects.differing(&group, self.node);
-            let mapping =
-                |address: &Address| Parameter::of(address.index()) == Some(Parameter::Mapping);
-            differing.retain(|address, _| self.behaviour.pdo.mapping_stored || !mapping(address));
-            self.memory.values.extend(differing);
-        }
-        Ok(())
     }
 
     /// Saves what is saved when it is written; a default need not be.
@@ -239,7 +205,7 @@ impl Slave {
             } else {
                 self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
             }
-        } else if [sync::COB_ID, sync::CYCLE, sync::OVERFLOW].contains(&address) {
+        } else if [sync::COB_ID, sync::CYCLE, sync::WINDOW, sync::OVERFLOW].contains(&address) {
             self.reconfigure_sync(now);
         } else if address == PRODUCER_TIME {
             self.reconfigure_heartbeat(now);
@@ -247,7 +213,7 @@ impl Slave {
             self.reconfigure_guarding();
         } else if Some(address) == self.profile.clock_object {
             self.set_clock(now);
-        } else if self.profile.complete && address == time::COB_ID {
+        } else if address == time::COB_ID {
             self.reconfigure_time(now);
         } else if self.profile.complete && index == consumers::CONSUMER_TIME {
             self.reconfigure_consumers(now);

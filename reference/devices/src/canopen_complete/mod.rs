@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, faults, pdo_faults, sdo_faults, service_faults,
+    block_faults, communication_faults, faults, pdo_faults, sdo_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -49,6 +49,7 @@ const OWN_FAULTS: &[Fault] = &[
 const FAULTS: [Fault;
     faults::COMMON.len()
         + service_faults::ALL.len()
+        + communication_faults::ALL.len()
         + OWN_FAULTS.len()
         + sdo_faults::ACCESS.len()
         + sdo_faults::SEGMENTED.len()
@@ -59,6 +60,7 @@ const FAULTS: [Fault;
         + pdo_faults::ALL.len()] = all_of(&[
     faults::COMMON,
     service_faults::ALL,
+    communication_faults::ALL,
     OWN_FAULTS,
     sdo_faults::ACCESS,
     sdo_faults::SEGMENTED,
@@ -87,8 +89,12 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::CAREFUL_SDO,
         canopen::variants::TERSE_SDO,
         canopen::variants::SMALL_BLOCKS,
-        canopen::variants::LONG_PDO_REPORTED,
         canopen::variants::OTHER_PDO_ABORTS,
+        canopen::variants::EMPTY_PLACES_READ_0,
+        canopen::variants::FIRST_SYNC_AT_ONCE,
+        canopen::variants::EMERGENCY_LATE,
+        canopen::variants::PASSING_ERRORS_SHOWN,
+        canopen::variants::LONG_PDO_UNREPORTED,
     ],
     build,
 };
@@ -106,6 +112,7 @@ fn documented() -> Behaviour {
         offered: true,
         ..BlockTransfer::default()
     };
+    behaviour.canopen.manners.empty_places_refused = true;
     behaviour
 }
 
@@ -208,6 +215,8 @@ impl Participant for Complete {
     }
 }
 
+#[cfg(test)]
+mod communication_tests;
 #[cfg(test)]
 mod pdo_tests;
 #[cfg(test)]

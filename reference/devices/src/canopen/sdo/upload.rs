@@ -29,6 +29,9 @@ impl Slave {
         if !readable && self.behaviour.sdo.write_only_checked {
             return Err(refused(Abort::WRITE_ONLY));
         }
+        if self.is_empty_place(address) {
+            return Err(refused(Abort::NO_DATA));
+        }
         match application.reading(address) {
             Answer::Now => self.answer_upload(now, address, slot, asked),
             Answer::Refused(abort) => return Err(refused(abort)),
