@@ -7,11 +7,7 @@ use std::{env, fs, io};
 /// The folder in the project, what it is called in the program, and the files that are taken.
 const FOLDERS: [(&str, &str, &[&str]); 2] = [
     ("suites", "suites", &["yaml"]),
-    (
-        "fixtures/devices",
-        "devices",
-        &["yaml", "eds", "objects", "registers"],
-    ),
+    ("fixtures/devices", "devices", &["yaml", "eds", "objects"]),
 ];
 
 fn main() -> io::Result<()> {

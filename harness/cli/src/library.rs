@@ -33,6 +33,8 @@ pub struct Device {
     pub description: DeviceDescription,
     /// Its object dictionary, if it has a CANopen side.
     pub dictionary: Option<Dictionary>,
+    /// Its register map, if it has a Modbus side of which that is known.
+    pub registers: Option<RegisterMap>,
     /// The reference device of that name; without one, the device cannot be simulated.
     pub kind: Option<&'static DeviceKind>,
     /// Where a bench has it.
@@ -176,6 +178,11 @@ fn source_file((path, text): (&str, &str)) -> SourceFile {
     }
 }
 
+/// Register maps lie beside the descriptions that name them.
+fn is_register_map(file: &SourceFile) -> bool {
+    file.text.lines().any(|line| line.starts_with("registers:"))
+}
+
 /// In so many lines the head of a suite is looked for.
 const HEAD_LINES: u32 = 100;
 
@@ -257,6 +264,7 @@ impl Reader {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
                 self.benches.push((file, Folder::OnDisk(folder)));
             }
+            Ok(file) if is_register_map(&file) => drop(self.registers(&file)),
             Ok(file) => self.files.push(file),
         }
     }
@@ -374,13 +382,12 @@ impl Reader {
             .modbus
             .as_ref()
             .and_then(|modbus| modbus.registers.as_ref());
-        if let Some(map) = map {
-            self.register_map(folder, map);
-        }
+        let registers = map.and_then(|map| self.register_map(folder, map));
         self.described.insert(description.device.clone());
         Some(Device {
             description,
             dictionary,
+            registers,
             kind,
             place: None,
         })
@@ -451,19 +458,20 @@ impl Reader {
         }
     }
 
-    fn register_map(&mut self, folder: &Folder, name: &str) {
+    fn register_map(&mut self, folder: &Folder, name: &str) -> Option<RegisterMap> {
         match folder.file(name) {
-            Ok(file) => {
-                if let Err(error) = RegisterMap::parse(&file.text) {
-                    self.problems.push(problems::of_table_error(
-                        &error,
-                        &file.path,
-                        &Arc::from(file.text.as_str()),
-                    ));
-                }
+            Ok(file) => self.registers(&file),
+            Err(problem) => {
+                self.problems.push(*problem);
+                None
             }
-            Err(problem) => self.problems.push(*problem),
         }
+    }
+
+    fn registers(&mut self, file: &SourceFile) -> Option<RegisterMap> {
+        fieldproof_suite::load_registers(file)
+            .map_err(|diagnostics| self.diagnostics(&diagnostics, std::slice::from_ref(file)))
+            .ok()
     }
 
     /// A suite may be for one device only, and that must be one there is.

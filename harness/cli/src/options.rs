@@ -410,6 +410,8 @@ pub enum SchemaKind {
     Suite,
     /// A device description.
     Device,
+    /// A register map.
+    Registers,
     /// A bench.
     Bench,
     /// One line of a journal.

@@ -6,6 +6,7 @@ mod case;
 mod check;
 mod checks;
 mod device;
+mod registers;
 mod rows;
 mod suite;
 
@@ -14,6 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 pub use bench::load_bench;
 pub use device::{load_device, unknown_checks};
+pub use registers::load_registers;
 
 use crate::expand::Environment;
 use crate::lines::Lines;

@@ -11,7 +11,7 @@ use crate::scalar::ObjectAddress;
 use crate::{Position, device};
 
 /// A thing and its place in the file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Located<T> {
     /// The thing.
     pub value: T,
