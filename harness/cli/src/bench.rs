@@ -14,7 +14,7 @@ use fieldproof_link::{
 use fieldproof_run::Bench;
 use fieldproof_suite::bench::{self, LinkKind};
 use fieldproof_suite::device::{self, PortDescription};
-use fieldproof_suite::model::{Effect, StimulusName};
+use fieldproof_suite::model::{Depth, Effect, StimulusName};
 
 use crate::library::{Device, Place};
 use crate::links;
@@ -254,6 +254,7 @@ fn bench_of(
         fixed_rates: BTreeSet::new(),
         stimuli,
         permits,
+        depth: Depth::Default,
         node: description.canopen.as_ref().map(|canopen| canopen.node),
         address: description.modbus.as_ref().map(|modbus| modbus.address),
     }

@@ -13,6 +13,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
+use fieldproof_run::{fill, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
 use fieldproof_suite::model::{Effect, StimulusName};
@@ -39,6 +40,8 @@ pub struct Device {
     pub kind: Option<&'static DeviceKind>,
     /// Where a bench has it.
     pub place: Option<Place>,
+    /// The suites it is tested with, of those that are asked for, filled from its dictionary.
+    pub suites: Vec<Suite>,
 }
 
 /// What a bench says of a device.
@@ -71,6 +74,14 @@ impl Device {
     /// The legal variants of its reference device; a real one is what it is.
     pub fn variants(&self) -> &'static [Variant] {
         self.simulated().map_or(&[], |kind| kind.variants)
+    }
+
+    fn fill(&mut self, suites: &[Suite]) {
+        let canopen = self.description.canopen.as_ref();
+        let node = canopen.map_or(1, |canopen| canopen.node);
+        self.suites = suites_for(suites, &self.description)
+            .map(|suite| fill(suite, self.dictionary.as_ref(), node))
+            .collect();
     }
 
     fn simulated(&self) -> Option<&'static DeviceKind> {
@@ -390,6 +401,7 @@ impl Reader {
             registers,
             kind,
             place: None,
+            suites: Vec::new(),
         })
     }
 
@@ -525,11 +537,14 @@ impl Reader {
                 return Err(Complaint::unknown("device", name, &known));
             }
         }
-        let devices = self
+        let mut devices: Vec<Device> = self
             .devices
             .into_values()
             .filter(|device| asked.is_empty() || asked.contains(&device.name()))
             .collect();
+        for device in &mut devices {
+            device.fill(&self.suites);
+        }
         Ok(Library {
             suites: self.suites,
             devices,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValue;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, value_parser};
 use fieldproof_run::effect_name;
-use fieldproof_suite::model::Effect;
+use fieldproof_suite::model::{Depth, Effect};
 
 /// Plays conformance suites against CANopen and Modbus field devices.
 #[derive(Debug, Parser)]
@@ -114,6 +114,9 @@ pub struct RunOptions {
     /// Show what would be played on what, and what is skipped and why.
     #[arg(long)]
     pub dry_run: bool,
+    /// How thorough to be: `full` plays what takes long on real time, too.
+    #[arg(long, value_name = "DEPTH", value_enum, default_value = "default")]
+    pub depth: DepthName,
     /// Documented deviations fail, and only the strict abort codes pass.
     #[arg(long)]
     pub strict: bool,
@@ -416,6 +419,24 @@ pub enum SchemaKind {
     Bench,
     /// One line of a journal.
     Journal,
+}
+
+/// How thorough a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DepthName {
+    /// As a matter of course.
+    Default,
+    /// With what takes long on real time.
+    Full,
+}
+
+impl From<DepthName> for Depth {
+    fn from(name: DepthName) -> Depth {
+        match name {
+            DepthName::Default => Depth::Default,
+            DepthName::Full => Depth::Full,
+        }
+    }
 }
 
 /// An effect by its name in the suite language.

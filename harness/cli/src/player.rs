@@ -5,13 +5,13 @@ use std::sync::atomic::AtomicBool;
 
 use fieldproof_link::Lane;
 use fieldproof_record::Sink;
-use fieldproof_run::{LaneJob, LaneOutcome, play_lane, skip_reason, suites_for};
-use fieldproof_suite::model::Effect;
-use fieldproof_suite::{Environment, Suite};
+use fieldproof_run::{Bench, LaneJob, LaneOutcome, play_lane, skip_reason};
+use fieldproof_suite::model::{Depth, Effect, Protocol};
+use fieldproof_suite::{CaseRef, Environment, Suite};
 
 use crate::bench::{self, Behaviour, NotConnected};
 use crate::glob;
-use crate::library::{Device, Library};
+use crate::library::Device;
 use crate::operator::Operator;
 use crate::options::EFFECTS;
 
@@ -27,6 +27,8 @@ pub struct Plan {
     pub except: BTreeSet<String>,
     /// What cases may do to the device.
     pub permits: BTreeSet<Effect>,
+    /// How thorough the run is.
+    pub depth: Depth,
     /// Only the strict abort codes pass.
     pub strict: bool,
     /// Whether the device is opened after each case to see that it is as it was found.
@@ -38,12 +40,13 @@ pub struct Plan {
 }
 
 impl Default for Plan {
-    /// All cases, everything permitted, on a device as it is.
+    /// All cases to the full depth, everything permitted, on a device as it is.
     fn default() -> Plan {
         Plan {
             cases: Vec::new(),
             except: BTreeSet::new(),
             permits: EFFECTS.into_iter().collect(),
+            depth: Depth::Full,
             strict: false,
             inspects_device: true,
             behaviour: Behaviour::default(),
@@ -59,9 +62,11 @@ impl Plan {
         (self.cases.is_empty() || self.cases.iter().any(is_like)) && !self.except.contains(id)
     }
 
-    /// The suites of `library` that `device` is tested with, each with the number of its selected cases.
-    pub fn suites<'l>(&self, library: &'l Library, device: &'l Device) -> Vec<(&'l Suite, usize)> {
-        suites_for(&library.suites, &device.description)
+    /// The suites that `device` is tested with, each with the number of its selected cases.
+    pub fn suites<'l>(&self, device: &'l Device) -> Vec<(&'l Suite, usize)> {
+        device
+            .suites
+            .iter()
             .map(|suite| {
                 (
                     suite,
@@ -76,13 +81,12 @@ impl Plan {
     }
 }
 
-/// Plays the suites of `library` on `device` as `plan` says; `sink` is told everything. Stops early once `stop` is
+/// Plays on `device` the suites it is tested with, as `plan` says; `sink` is told everything. Stops early once `stop` is
 /// set.
 ///
 /// # Errors
 /// The device has no such fault or variant, or cannot be simulated, or its links cannot be opened.
 pub fn play(
-    library: &Library,
     device: &Device,
     plan: &Plan,
     sink: &mut dyn Sink,
@@ -90,7 +94,10 @@ pub fn play(
 ) -> Result<LaneOutcome, NotConnected> {
     let mut lane = bench::open(device, &plan.behaviour, &plan.operator)?;
     let lane = lane.as_mut();
-    let bench = bench::bench(device, lane, &plan.permits);
+    let bench = Bench {
+        depth: plan.depth,
+        ..bench::bench(device, lane, &plan.permits)
+    };
     let behaviour = &plan.behaviour;
     let job = LaneJob {
         tool: TOOL,
@@ -98,7 +105,7 @@ pub fn play(
         device: &device.description,
         dictionary: device.dictionary.as_ref(),
         bench: &bench,
-        suites: &library.suites,
+        suites: &device.suites,
         selects: &|id| plan.selects(id),
         strict: plan.strict,
         inspects_device: plan.inspects_device,
@@ -122,7 +129,6 @@ pub(crate) struct PlannedCase {
 /// # Errors
 /// The device has no such fault or variant, or cannot be simulated.
 pub(crate) fn preview<'l>(
-    library: &'l Library,
     device: &'l Device,
     plan: &Plan,
 ) -> Result<Vec<(&'l Suite, Vec<PlannedCase>)>, NotConnected> {
@@ -134,6 +140,10 @@ pub(crate) fn preview<'l>(
         }
         _ => bench::described_bench(device, &plan.permits, &plan.operator),
     };
+    let bench = Bench {
+        depth: plan.depth,
+        ..bench
+    };
     let environment = Environment {
         node: bench.node,
         address: bench.address,
@@ -141,28 +151,49 @@ pub(crate) fn preview<'l>(
     let planned = |suite: &'l Suite| {
         let cases = suite.cases().filter(|case| plan.selects(&case.id()));
         cases
-            .map(|case| match case.lower(&environment) {
-                Ok(lowered) => PlannedCase {
-                    skipped: skip_reason(
-                        &lowered,
-                        suite.head.protocol,
-                        &device.description,
-                        device.dictionary.as_ref(),
-                        &bench,
-                    ),
-                    id: lowered.id,
-                    title: lowered.title,
-                },
-                Err(diagnostics) => PlannedCase {
-                    id: case.id(),
-                    title: String::new(),
-                    skipped: diagnostics.first().map(|first| first.message.clone()),
-                },
-            })
+            .map(|case| plan_case(&case, suite.head.protocol, device, &environment, &bench))
             .collect::<Vec<_>>()
     };
-    Ok(suites_for(&library.suites, &device.description)
+    Ok(device
+        .suites
+        .iter()
         .map(|suite| (suite, planned(suite)))
         .filter(|(_, cases)| !cases.is_empty())
         .collect())
+}
+
+fn plan_case(
+    case: &CaseRef<'_>,
+    protocol: Protocol,
+    device: &Device,
+    environment: &Environment,
+    bench: &Bench,
+) -> PlannedCase {
+    let unread = |title: &str, why: Option<String>| PlannedCase {
+        id: case.id(),
+        title: title.to_owned(),
+        skipped: why,
+    };
+    if let Some(absent) = case.absent() {
+        return unread(case.title_as_written(), Some(absent.to_owned()));
+    }
+    let lowered = match case.lower(environment) {
+        Ok(lowered) => lowered,
+        Err(diagnostics) => {
+            let first = diagnostics.into_iter().next();
+            return unread("", first.map(|first| first.message));
+        }
+    };
+    let skipped = skip_reason(
+        &lowered,
+        protocol,
+        &device.description,
+        device.dictionary.as_ref(),
+        bench,
+    );
+    PlannedCase {
+        id: lowered.id,
+        title: lowered.title,
+        skipped,
+    }
 }

@@ -18,11 +18,13 @@ pub(crate) fn is_for(suite: &Suite, device: &Device) -> bool {
 
 /// Every pattern must be like at least one case of the selected suites.
 pub(crate) fn patterns_must_match(library: &Library, plan: &Plan) -> Result<(), Complaint> {
+    let of_devices = || library.devices.iter().flat_map(|device| &device.suites);
     for pattern in &plan.cases {
         let ids = || {
             library
                 .suites
                 .iter()
+                .chain(of_devices())
                 .flat_map(Suite::cases)
                 .map(|case| case.id())
         };

@@ -34,14 +34,8 @@ fn trials() -> Result<Vec<Trial>, String> {
     let mut trials = Vec::new();
     for device in &library.devices {
         let mut sink = Outcomes::default();
-        play(
-            &library,
-            device,
-            &Plan::default(),
-            &mut sink,
-            &AtomicBool::new(false),
-        )
-        .map_err(|error| error.to_string())?;
+        play(device, &Plan::default(), &mut sink, &AtomicBool::new(false))
+            .map_err(|error| error.to_string())?;
         trials.extend(
             sink.outcomes
                 .into_iter()

@@ -15,6 +15,7 @@ use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_record::{Event, Journal, Sink};
 use fieldproof_run::{Bench, LaneJob, play_lane};
 use fieldproof_suite::device::DeviceDescription;
+use fieldproof_suite::model::Depth;
 use fieldproof_suite::{SourceFile, Suite, load, load_device};
 
 const READS: usize = 20_000;
@@ -68,6 +69,7 @@ fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S
         modbus_tcp: [].into(),
         stimuli: [].into(),
         permits: [].into(),
+        depth: Depth::Default,
         node: Some(1),
         address: None,
     };

@@ -6,12 +6,13 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature};
 use fieldproof_suite::model::{
-    Case, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
+    Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
     SendBytes, Step, StimulusName,
 };
+use fieldproof_suite::scalar::ObjectAddress;
 
 use crate::selected::missing_object;
-use crate::tester::SERIAL;
+use crate::tester::{SERIAL, multiplexer};
 
 /// What the bench has and permits.
 #[derive(Debug, Clone)]
@@ -26,6 +27,8 @@ pub struct Bench {
     pub stimuli: BTreeSet<StimulusKind>,
     /// The effects it permits.
     pub permits: BTreeSet<Effect>,
+    /// How thorough the run is.
+    pub depth: Depth,
     /// The device's node-ID on this bench.
     pub node: Option<u8>,
     /// The device's Modbus address on this bench.
@@ -41,7 +44,8 @@ pub fn skip_reason(
     bench: &Bench,
 ) -> Option<String> {
     missing_port(protocol, bench)
-        .or_else(|| missing_need(case, device, bench))
+        .or_else(|| too_deep(case, bench))
+        .or_else(|| missing_need(case, device, dictionary, bench))
         .or_else(|| rtu_alone(case, bench))
         .or_else(|| missing_claim(case, device))
         .or_else(|| missing_objects(case, dictionary))
@@ -62,8 +66,27 @@ fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
         .map(|role| format!("no port {role:?}"))
 }
 
-fn missing_need(case: &Case, device: &DeviceDescription, bench: &Bench) -> Option<String> {
+fn too_deep(case: &Case, bench: &Bench) -> Option<String> {
+    (case.depth > bench.depth).then(|| "takes long: played with --depth full".to_owned())
+}
+
+fn missing_need(
+    case: &Case,
+    device: &DeviceDescription,
+    dictionary: Option<&Dictionary>,
+    bench: &Bench,
+) -> Option<String> {
+    let is_there = |object: &ObjectAddress| {
+        dictionary.is_some_and(|it| it.entry(object.index, object.sub).is_some())
+    };
     case.needs.iter().find_map(|need| match need {
+        Need::Objects(objects) => {
+            let missing = objects.iter().find(|object| !is_there(object))?;
+            Some(format!(
+                "the device has no object {}",
+                multiplexer(*missing)
+            ))
+        }
         Need::Feature(feature) if !is_claimed(*feature, device, bench) => Some(format!(
             "the device does not claim {}",
             feature_name(*feature)
@@ -248,6 +271,10 @@ pub const fn feature_name(feature: Feature) -> &'static str {
         Feature::SyncProducer => "sync-producer",
         Feature::Emergency => "emergency",
         Feature::Lss => "lss",
+        Feature::LssFastscan => "lss-fastscan",
+        Feature::RemoteFrames => "remote-frames",
+        Feature::Cia402 => "cia402",
+        Feature::Cia406 => "cia406",
         Feature::ModbusRtu => "modbus-rtu",
         Feature::ModbusTcp => "modbus-tcp",
         Feature::Ssi => "ssi",

@@ -12,6 +12,42 @@ use fieldproof_suite::model::{Case, Citation};
 use crate::applies::effect_name;
 use crate::lane::LaneJob;
 
+/// The first entry of a case that is not read.
+fn unread(case: &CaseRef<'_>, title: &str, place: Place, at_ns: u64) -> CaseStarted {
+    CaseStarted {
+        id: case.id(),
+        written_id: case.written_id(),
+        title: title.to_owned(),
+        at_ns,
+        cites: Vec::new(),
+        against: Vec::new(),
+        because: None,
+        examples: Vec::new(),
+        effects: Vec::new(),
+        place,
+    }
+}
+
+/// The two entries of a case for which the device has nothing to play it with.
+pub(crate) fn passed_over(
+    case: &CaseRef<'_>,
+    place: Place,
+    why: &str,
+    at_ns: u64,
+) -> (CaseStarted, CaseFinished) {
+    let started = unread(case, case.title_as_written(), place, at_ns);
+    let finished = CaseFinished {
+        id: case.id(),
+        at_ns,
+        duration_ns: 0,
+        verdict: Verdict::Skipped,
+        reason: Some(why.to_owned()),
+        failures: Vec::new(),
+        excerpt: Vec::new(),
+    };
+    (started, finished)
+}
+
 /// The two entries of a case that cannot be played as it stands on this bench.
 pub(crate) fn refused(
     case: &CaseRef<'_>,
@@ -19,18 +55,7 @@ pub(crate) fn refused(
     why: &str,
     at_ns: u64,
 ) -> (CaseStarted, CaseFinished) {
-    let started = CaseStarted {
-        id: case.id(),
-        written_id: case.written_id(),
-        title: "cannot be read for this bench".into(),
-        at_ns,
-        cites: Vec::new(),
-        against: Vec::new(),
-        because: None,
-        examples: Vec::new(),
-        effects: Vec::new(),
-        place: place.clone(),
-    };
+    let started = unread(case, "cannot be read for this bench", place.clone(), at_ns);
     let failure = Failure {
         verdict: Verdict::Error,
         place,

@@ -39,7 +39,7 @@ pub struct LaneJob<'a> {
     pub dictionary: Option<&'a Dictionary>,
     /// What the bench has and permits.
     pub bench: &'a Bench,
-    /// All suites; those for other devices are left out.
+    /// All suites, filled from the dictionary ([`crate::fill`]); those for other devices are left out.
     pub suites: &'a [Suite],
     /// Which cases are played, by id.
     pub selects: &'a (dyn Fn(&str) -> bool + Sync),
@@ -255,6 +255,9 @@ impl<'a> Player<'a> {
             end_column: at.end_column,
             text: suite.line_text(at.line).to_owned(),
         };
+        if let Some(absent) = case.absent() {
+            return self.pass_over(case, place(case.at()), absent);
+        }
         let mut case = match case.lower(&self.environment) {
             Ok(case) => case,
             Err(diagnostics) => return self.refuse(case, place(case.at()), &diagnostics),
@@ -320,6 +323,19 @@ impl<'a> Player<'a> {
         }
         self.last_state = Some(after);
         outcome
+    }
+
+    /// There is nothing in this device that the case could be played with.
+    fn pass_over(&mut self, case: &CaseRef<'_>, place: Place, absent: &str) -> Verdict {
+        let at_ns = self.tester.session.now().as_nanos();
+        let (started, finished) = entries::passed_over(case, place, absent, at_ns);
+        self.tester
+            .session
+            .emit(Event::CaseStarted(Box::new(started)));
+        self.tester
+            .session
+            .emit(Event::CaseFinished(Box::new(finished)));
+        Verdict::Skipped
     }
 
     /// The loader has read the case before: only the bench's node or address can have made the difference.

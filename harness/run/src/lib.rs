@@ -10,6 +10,7 @@ mod case;
 mod companions;
 mod entries;
 mod excerpt;
+mod find;
 mod lane;
 mod limits;
 mod modbus;
@@ -33,4 +34,5 @@ mod unexpected;
 mod value;
 
 pub use applies::{Bench, effect_name, feature_name, skip_reason};
+pub use find::fill;
 pub use lane::{LaneJob, LaneOutcome, play_lane, suites_for};

@@ -173,6 +173,14 @@ pub enum Feature {
     Emergency,
     /// LSS slave.
     Lss,
+    /// LSS fastscan.
+    LssFastscan,
+    /// A remote frame fetches a TPDO whose COB-ID allows it.
+    RemoteFrames,
+    /// The state machine of drives, CiA 402.
+    Cia402,
+    /// An encoder profile device, CiA 406.
+    Cia406,
     /// Modbus RTU slave.
     ModbusRtu,
     /// Modbus TCP server.

@@ -30,7 +30,7 @@ mod yaml;
 pub use diagnostic::{Diagnostic, Position, Severity};
 pub use expand::Environment;
 pub use load::{
-    CaseRef, Loaded, SourceFile, Suite, load, load_bench, load_device, load_registers,
+    CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_device, load_registers,
     unknown_checks,
 };
 pub use schema::{bench_schema, device_schema, registers_schema, schema};

@@ -23,6 +23,12 @@ pub(crate) fn optional_time<'de, D: Deserializer<'de>>(
     Ok(time.map(|time| time.0))
 }
 
+pub(crate) fn one_or_many<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Vec<T>, D::Error> {
+    OneOrMany::deserialize(deserializer).map(|many| many.0)
+}
+
 pub(crate) fn bit_rate<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     BitRate::deserialize(deserializer).map(|rate| rate.0)
 }

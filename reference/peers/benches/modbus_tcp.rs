@@ -193,6 +193,7 @@ fn engine(address: SocketAddr, suites: &[Suite]) -> Duration {
     .unwrap();
     let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
     let bench = Bench {
+        depth: fieldproof_suite::model::Depth::Default,
         fixed_rates: Default::default(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: ["serial".to_owned()].into(),

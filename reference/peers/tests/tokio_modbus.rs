@@ -25,7 +25,7 @@ use fieldproof_link::{Connected, Framing, Line, Parity, SerialSettings, StopBits
 use fieldproof_record::{Event, Verdict, VerdictCounts};
 use fieldproof_run::{Bench, LaneJob, play_lane};
 use fieldproof_suite::device::{Deviation, DeviceDescription, Feature};
-use fieldproof_suite::model::Effect;
+use fieldproof_suite::model::{Depth, Effect};
 use fieldproof_suite::{SourceFile, Suite, load, load_device};
 use nix::pty::openpty;
 use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
@@ -253,6 +253,7 @@ fn play_on(port: Box<dyn Port>, device: DeviceDescription, chapters: &[&str]) ->
     let is_tcp = matches!(port.properties().line, Line::Stream(_));
     let mut lane = RealLane::new(vec![port], Box::new(NoStimuli));
     let bench = Bench {
+        depth: Depth::Default,
         fixed_rates: Default::default(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: is_tcp.then(|| "serial".to_owned()).into_iter().collect(),

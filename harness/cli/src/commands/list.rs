@@ -50,12 +50,24 @@ pub(crate) fn list(options: &ListOptions, screen: &mut Screen) -> Result<Exit, C
                 .iter()
                 .any(|device| select::is_for(suite, device))
     };
+    // What a description fills is known where one device is asked for.
+    let suites = match library.devices.as_slice() {
+        [device] if !options.selection.devices.is_empty() => &device.suites,
+        _ => &library.suites,
+    };
     let mut listed = Vec::new();
-    for suite in library.suites.iter().filter(for_some_device) {
+    for suite in suites.iter().filter(for_some_device) {
         let environment = environment(&library, suite);
-        for case in suite.cases().filter(|case| plan.selects(&case.id())) {
+        let cases = suite.cases().filter(|case| case.absent().is_none());
+        for case in cases.filter(|case| plan.selects(&case.id())) {
             match case.lower(&environment) {
-                Ok(lowered) => listed.push(listed_case(suite, lowered)),
+                Ok(lowered) => listed.push(ListedCase {
+                    title: match case.is_open() {
+                        true => case.title_as_written().to_owned(),
+                        false => lowered.title.clone(),
+                    },
+                    ..listed_case(suite, lowered)
+                }),
                 Err(diagnostics) => {
                     let text = std::sync::Arc::default();
                     let problems = diagnostics
@@ -112,6 +124,12 @@ fn listed_case(suite: &Suite, case: Case) -> ListedCase<'_> {
             StimulusName::Setting => "stimulus: setting",
         }
         .to_owned(),
+        Need::Objects(objects) => {
+            let shown = objects
+                .iter()
+                .map(|object| format!("{:04X}:{:02X}", object.index, object.sub));
+            format!("object: {}", shown.collect::<Vec<_>>().join(", "))
+        }
     };
     ListedCase {
         suite: &suite.head.suite,

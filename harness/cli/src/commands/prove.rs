@@ -32,7 +32,7 @@ pub(crate) fn prove(options: &ProveOptions, screen: &mut Screen) -> Result<Exit,
     let rounds = rounds(&library, &plan, options)?;
     let stop = stop::on_interrupt()?;
     let shown = options.format == Format::Text && Screen::shows_progress();
-    let tallies = play_all(&library, &plan, &rounds, stop, shown)?;
+    let tallies = play_all(&plan, &rounds, stop, shown)?;
     if stop.load(Ordering::Relaxed) {
         return Err(Complaint::bench("interrupted"));
     }
@@ -72,7 +72,7 @@ fn rounds<'l>(
     let devices: Vec<&Device> = library
         .devices
         .iter()
-        .filter(|device| !plan.suites(library, device).is_empty())
+        .filter(|device| !plan.suites(device).is_empty())
         .collect();
     if devices.is_empty() {
         return Err(select::nothing_selected());
@@ -179,12 +179,7 @@ impl Tally {
 
 /// Plays one round. A device that cannot be put back stops its lane; the cases after that one are played on a fresh
 /// device, for each is to show what it catches.
-fn play_round(
-    library: &Library,
-    plan: &Plan,
-    round: &Round<'_>,
-    stop: &AtomicBool,
-) -> Result<Tally, Complaint> {
+fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally, Complaint> {
     let mut tally = Tally::default();
     let mut plan = Plan {
         behaviour: round.behaviour.clone(),
@@ -193,7 +188,7 @@ fn play_round(
     loop {
         let stops = tally.stops.len();
         let tried = tally.tried.len();
-        player::play(library, round.device, &plan, &mut tally, stop)
+        player::play(round.device, &plan, &mut tally, stop)
             .map_err(|error| Complaint::bench(error.to_string()))?;
         let whole = tally.stops.len() == stops;
         let nothing_new = tally.tried.len() == tried;
@@ -206,7 +201,6 @@ fn play_round(
 
 /// Plays all rounds, as many at once as there are processors.
 fn play_all(
-    library: &Library,
     plan: &Plan,
     rounds: &[Round<'_>],
     stop: &AtomicBool,
@@ -221,7 +215,7 @@ fn play_all(
             let Some(round) = rounds.get(index) else {
                 return Ok(());
             };
-            let tally = play_round(library, plan, round, stop)?;
+            let tally = play_round(plan, round, stop)?;
             done.lock()
                 .unwrap_or_else(PoisonError::into_inner)
                 .insert(index, tally);

@@ -33,14 +33,14 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     select::patterns_must_match(&library, &plan)?;
     let devices = devices(&library, &plan)?;
     if options.dry_run {
-        return preview::show(&library, &devices, &plan, options, screen);
+        return preview::show(&devices, &plan, options, screen);
     }
     select::must_be_simulated(&devices)?;
     let stop = stop::on_interrupt()?;
     let started = Instant::now();
     let reports = Reports::open(&options.reports)?;
-    let stage = stage(&library, &devices, &plan, options, screen);
-    let lanes = lanes::play(&library, &devices, &plan, &reports, &stage, stop);
+    let stage = stage(&devices, &plan, options, screen);
+    let lanes = lanes::play(&devices, &plan, &reports, &stage, stop);
     let (summaries, screen) = stage.leave();
     let written = lanes.and_then(|lanes| reports.junit(lanes));
     let exit = match &written {
@@ -51,7 +51,7 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
         seed: options.seed,
         strict: options.strict,
         exit: exit.code(),
-        not_played: not_played(&library, &devices, &plan, &summaries),
+        not_played: not_played(&devices, &plan, &summaries),
         lanes: &summaries,
     };
     // What was seen is worth knowing also where it could not be kept.
@@ -65,27 +65,24 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     written.map(|()| exit)
 }
 
-fn planned(library: &Library, devices: &[&Device], plan: &Plan) -> usize {
-    let suites = devices
-        .iter()
-        .flat_map(|device| plan.suites(library, device));
+fn planned(devices: &[&Device], plan: &Plan) -> usize {
+    let suites = devices.iter().flat_map(|device| plan.suites(device));
     suites.map(|(_, cases)| cases).sum()
 }
 
 /// How many cases no lane came to, because it was stopped.
-fn not_played(library: &Library, devices: &[&Device], plan: &Plan, lanes: &[LaneSummary]) -> usize {
+fn not_played(devices: &[&Device], plan: &Plan, lanes: &[LaneSummary]) -> usize {
     let finished = lanes.iter().map(|lane| lane.counts.total() as usize);
-    planned(library, devices, plan).saturating_sub(finished.sum())
+    planned(devices, plan).saturating_sub(finished.sum())
 }
 
 fn stage<'s>(
-    library: &Library,
     devices: &[&Device],
     plan: &Plan,
     options: &RunOptions,
     screen: &'s mut Screen,
 ) -> Stage<'s> {
-    let cases = planned(library, devices, plan);
+    let cases = planned(devices, plan);
     let text = options.format == Format::Text;
     let names: Vec<&str> = devices.iter().map(|device| device.name()).collect();
     let console = ConsoleOptions {
@@ -146,6 +143,7 @@ fn plan(options: &RunOptions) -> Plan {
         cases: options.selection.cases.clone(),
         except: BTreeSet::new(),
         permits,
+        depth: options.depth.into(),
         strict: options.strict,
         inspects_device: true,
         behaviour: Behaviour {
@@ -177,7 +175,7 @@ fn devices<'l>(library: &'l Library, plan: &Plan) -> Result<Vec<&'l Device>, Com
     if let Some(name) = &plan.behaviour.variant {
         devices = having("variant", name, devices, variants)?;
     }
-    devices.retain(|device| !plan.suites(library, device).is_empty());
+    devices.retain(|device| !plan.suites(device).is_empty());
     match devices.is_empty() {
         true => Err(select::nothing_selected()),
         false => Ok(devices),

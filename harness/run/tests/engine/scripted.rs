@@ -15,7 +15,7 @@ use fieldproof_run::{Bench, LaneJob, LaneOutcome, play_lane};
 use fieldproof_suite::device::{
     CanopenDescription, Deviation, DeviceDescription, Feature, PortDescription, Timing,
 };
-use fieldproof_suite::model::Effect;
+use fieldproof_suite::model::{Depth, Effect};
 use fieldproof_suite::{SourceFile, load};
 
 const BIT_RATE: u32 = 1_000_000;
@@ -253,6 +253,7 @@ impl Setup {
             modbus_tcp: [].into(),
             stimuli: [].into(),
             permits: self.permits.iter().copied().collect(),
+            depth: Depth::Default,
             node: Some(1),
             address: None,
         };

@@ -13,7 +13,7 @@ use fieldproof_link::{Connected, Framing};
 use fieldproof_record::{CaseFinished, Event};
 use fieldproof_run::{Bench, LaneJob, LaneOutcome, play_lane};
 use fieldproof_suite::device::DeviceDescription;
-use fieldproof_suite::model::Effect;
+use fieldproof_suite::model::{Depth, Effect};
 use fieldproof_suite::{SourceFile, Suite, load, load_device};
 
 /// What a run gave.
@@ -130,6 +130,7 @@ pub(crate) fn play(
         ports: ["serial".to_owned()].into(),
         modbus_tcp: is_tcp.then(|| "serial".to_owned()).into_iter().collect(),
         stimuli: [].into(),
+        depth: Depth::Default,
         permits: [
             Effect::Writes,
             Effect::Persists,

@@ -10,7 +10,8 @@ use serde::de::{Deserializer, IgnoredAny};
 use crate::device::Feature;
 use crate::forms::{Either, OneOrMany, TwoForms};
 use crate::model::{
-    Effect, Forbidden, Located, Need, Protocol, Source, Step, StimulusName, WrittenFor,
+    Depth, Effect, Forbidden, Located, Need, Protocol, Query, Source, Step, StimulusName,
+    WrittenFor,
 };
 use crate::scalar::ObjectAddress;
 
@@ -65,6 +66,12 @@ pub(crate) struct CaseFile {
     /// What it does to the device.
     #[serde(default)]
     pub(crate) effects: OneOrMany<Effect>,
+    /// Only played with `--depth full`, for it takes long on real time.
+    #[serde(default)]
+    pub(crate) depth: Depth,
+    /// The entries of catalogues that it realises: `{cct: "2.17"}`.
+    #[serde(default)]
+    pub(crate) covers: BTreeMap<String, OneOrMany<String>>,
     /// The node or address its frames are printed for.
     #[serde(default)]
     pub(crate) written_for: WrittenFor,
@@ -76,7 +83,10 @@ pub(crate) struct CaseFile {
     pub(crate) restore: RestoreFile,
     /// The table: one row, one case. What stands in a column is `{column}` in the case.
     #[serde(default)]
-    pub(crate) each: ReadLater<Vec<Row>>,
+    pub(crate) each: ReadLater<Table>,
+    /// What the description of the device gives: the first object or PDO that is so, by a name of your own.
+    #[serde(default)]
+    pub(crate) choose: ReadLater<BTreeMap<String, Query>>,
     /// The columns that name a case; else the first.
     #[serde(default)]
     pub(crate) key: ReadLater<OneOrMany<String>>,
@@ -114,6 +124,25 @@ impl JsonSchema for Row {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({"type": "object", "description": "A row: what stands in each column."})
+    }
+}
+
+/// Rows, or one row for everything in the description of the device that is so.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Table {}
+
+impl JsonSchema for Table {
+    fn schema_name() -> Cow<'static, str> {
+        "Table".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let rows = generator.subschema_for::<Vec<Row>>();
+        let query = generator.subschema_for::<Query>();
+        json_schema!({"anyOf": [
+            rows,
+            {"type": "object", "additionalProperties": query, "minProperties": 1, "maxProperties": 1},
+        ]})
     }
 }
 
@@ -168,23 +197,28 @@ impl TwoForms for CiteFile {
     }
 }
 
-/// A stimulus that the bench must offer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub(crate) struct StimulusNeed {
-    /// Its kind.
-    stimulus: StimulusName,
+/// A need that is more than a word.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FullNeed {
+    /// A stimulus that the bench must offer.
+    Stimulus(StimulusName),
+    /// Objects that the device's dictionary must have.
+    Object(OneOrMany<ObjectAddress>),
 }
 
 impl TwoForms for Need {
     type Short = Feature;
-    type Full = StimulusNeed;
+    type Full = FullNeed;
 
     fn from_short(feature: Feature) -> Need {
         Need::Feature(feature)
     }
 
-    fn from_full(need: StimulusNeed) -> Need {
-        Need::Stimulus(need.stimulus)
+    fn from_full(need: FullNeed) -> Need {
+        match need {
+            FullNeed::Stimulus(stimulus) => Need::Stimulus(stimulus),
+            FullNeed::Object(objects) => Need::Objects(objects.0),
+        }
     }
 }

@@ -83,6 +83,8 @@ pub(super) fn read<'a>(
         examples: file.examples.0,
         needs: file.needs.0.into_iter().map(|need| need.0).collect(),
         effects: file.effects.0,
+        depth: file.depth,
+        covers: covers(file.covers),
         written_for: file.written_for,
         forbids: file.forbids.0,
         restore: Restore {
@@ -101,6 +103,14 @@ pub(super) fn read<'a>(
         true => Ok(lowered),
         false => Err(problems),
     }
+}
+
+fn covers(covers: BTreeMap<String, OneOrMany<String>>) -> Vec<(String, String)> {
+    let entries = |(catalogue, entries): (String, OneOrMany<String>)| {
+        let pair = move |entry| (catalogue.clone(), entry);
+        entries.0.into_iter().map(pair)
+    };
+    covers.into_iter().flat_map(entries).collect()
 }
 
 pub(super) fn citations(

@@ -6,15 +6,18 @@ mod case;
 mod check;
 mod checks;
 mod device;
+mod fill;
 mod registers;
 mod rows;
 mod suite;
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 pub use bench::load_bench;
 pub use device::{load_device, unknown_checks};
+pub use fill::Columns;
 pub use registers::load_registers;
 
 use crate::expand::Environment;
@@ -41,16 +44,16 @@ pub struct Loaded {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// A suite that has been checked.
+/// A suite that has been checked. Its copies share its cases.
 #[derive(Debug, Clone)]
 pub struct Suite {
     /// Its head.
     pub head: SuiteHead,
     /// The path of its file.
     pub path: String,
-    text: String,
-    lines: Lines,
-    cases: Vec<CaseTemplate>,
+    text: Arc<str>,
+    lines: Arc<Lines>,
+    cases: Arc<[CaseTemplate]>,
 }
 
 /// A case as written.
@@ -65,6 +68,12 @@ struct CaseTemplate {
     without_rows: bool,
     /// The columns that name a case.
     key: Vec<String>,
+    /// What the description of a device adds to every row.
+    fillings: Vec<fill::Filling>,
+    /// Samples stand for that until now.
+    open: bool,
+    /// What the description does not have, so that there is nothing to play.
+    absent: Option<String>,
 }
 
 /// One case of a suite: a row of its table, or the whole of a case without one.
@@ -96,9 +105,9 @@ impl Suite {
         Suite {
             head,
             path: file.path.clone(),
-            lines: Lines::of(&file.text),
-            text: file.text.clone(),
-            cases,
+            lines: Arc::new(Lines::of(&file.text)),
+            text: Arc::from(file.text.as_str()),
+            cases: cases.into(),
         }
     }
 
@@ -106,7 +115,12 @@ impl Suite {
     pub fn cases(&self) -> impl Iterator<Item = CaseRef<'_>> {
         self.cases.iter().flat_map(move |template| {
             let whole = template.rows.is_empty().then_some(None);
-            let rows = template.rows.iter().map(Some);
+            let most = if template.stands_for_many() {
+                1
+            } else {
+                usize::MAX
+            };
+            let rows = template.rows.iter().map(Some).take(most);
             whole.into_iter().chain(rows).map(move |row| CaseRef {
                 suite: self,
                 template,
@@ -119,7 +133,7 @@ impl Suite {
     /// every value of that column.
     pub fn checks(&self) -> BTreeSet<String> {
         let mut checks = BTreeSet::new();
-        for template in &self.cases {
+        for template in self.cases.iter() {
             checks::names(&template.body, &template.rows, &mut checks);
         }
         checks
@@ -140,7 +154,8 @@ impl<'a> CaseRef<'a> {
     /// `suite/case[key=value]`; without a table `suite/case`.
     pub fn id(&self) -> String {
         let mut id = self.written_id();
-        if let Some(row) = self.row {
+        let named = !self.template.key.is_empty() && !self.template.stands_for_many();
+        if let Some(row) = self.row.filter(|_| named) {
             id.push_str(&case::row_key(row, &self.template.key));
         }
         id
@@ -149,6 +164,22 @@ impl<'a> CaseRef<'a> {
     /// `suite/case`: the case as written, before its table.
     pub fn written_id(&self) -> String {
         format!("{}/{}", self.suite.head.suite, self.template.name)
+    }
+
+    /// What the device would have to have for this case, if it does not.
+    pub fn absent(&self) -> Option<&'a str> {
+        self.template.absent.as_deref()
+    }
+
+    /// Whether it stands for as many cases as the description of a device gives; [`CaseRef::lower`] gives a sample.
+    pub fn is_open(&self) -> bool {
+        self.template.is_open()
+    }
+
+    /// Its title with the placeholders in it.
+    pub fn title_as_written(&self) -> &'a str {
+        let title = self.template.body.get("title").and_then(Node::text);
+        title.unwrap_or_default()
     }
 
     /// Where it stands in its file: its row, or its name.

@@ -29,7 +29,7 @@ pub(super) fn read(
     let suite = read_root(file, root, names, &mut problems);
     if let Some(suite) = &suite {
         let mut check = RowCheck::new(suite);
-        for template in &suite.cases {
+        for template in suite.cases.iter() {
             check.case(template, &mut problems);
         }
     }
@@ -193,6 +193,7 @@ fn read_template(
     };
     check_name(&text, at)?;
     let table = take(&mut node, "each");
+    let choose = take(&mut node, "choose");
     let mut template = CaseTemplate {
         name: text,
         at,
@@ -200,6 +201,13 @@ fn read_template(
         rows: Vec::new(),
         without_rows: false,
         key: Vec::new(),
+        fillings: Vec::new(),
+        open: false,
+        absent: None,
+    };
+    let (table, query) = match table {
+        Some(each) if matches!(each.value.kind, Kind::Map(_)) => (None, Some(each)),
+        table => (table, None),
     };
     match table {
         Some(table) => read_table(table, &mut template, problems),
@@ -211,7 +219,30 @@ fn read_template(
             }
         }
     }
+    template.read_fillings(choose.as_ref(), query.as_ref(), problems);
+    if let Some(query) = query {
+        let names = query.value.entries().iter().take(1);
+        template.key = names.map(|entry| entry.key.text.to_string()).collect();
+    }
+    find_unused(&template, problems);
     Ok(template)
+}
+
+/// What is chosen must be used, as columns must; the name of each of many need not be.
+fn find_unused(template: &CaseTemplate, problems: &mut Vec<Problem>) {
+    let mut used: BTreeSet<&str> = template.key.iter().map(String::as_str).collect();
+    collect_names(&template.body, &mut used);
+    let of = |name: &str, used: &str| {
+        let rest = used.strip_prefix(name);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+    };
+    for (name, at) in template.filled_names() {
+        if !used.iter().any(|used| of(name, used)) {
+            let message = format!("nothing uses what is chosen as `{name}`");
+            let label = format!("`{{{name}}}` does not occur in the case");
+            problems.push(*Problem::new(code::UNUSED_COLUMN, message, label).at(at));
+        }
+    }
 }
 
 fn read_table(table: Entry, template: &mut CaseTemplate, problems: &mut Vec<Problem>) {

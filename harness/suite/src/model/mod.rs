@@ -4,6 +4,7 @@
 mod canopen;
 mod frames;
 mod modbus;
+mod query;
 mod sdo;
 mod step;
 mod stimulate;
@@ -12,6 +13,7 @@ mod suite;
 pub use canopen::*;
 pub use frames::*;
 pub use modbus::*;
+pub use query::*;
 pub use sdo::*;
 pub use step::*;
 pub use stimulate::*;

@@ -80,6 +80,10 @@ pub struct Case {
     pub needs: Vec<Need>,
     /// What it does to the device.
     pub effects: Vec<Effect>,
+    /// How thorough a run must be to play it.
+    pub depth: Depth,
+    /// The entries of catalogues that it realises: the catalogue and the entry.
+    pub covers: Vec<(String, String)>,
     /// The node or address its frames are printed for.
     pub written_for: WrittenFor,
     /// What may not arrive during the case beside what steps expect.
@@ -106,12 +110,25 @@ pub struct Citation {
 }
 
 /// What the device or the bench must offer for a case to make sense.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Need {
     /// A feature that the description claims.
     Feature(device::Feature),
     /// A stimulus that the bench offers: `stimulus: process-value`.
     Stimulus(StimulusName),
+    /// Objects of the device's dictionary: `object: "1029:01"`.
+    Objects(Vec<ObjectAddress>),
+}
+
+/// How thorough a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Depth {
+    /// As a matter of course.
+    #[default]
+    Default,
+    /// With what takes long on real time.
+    Full,
 }
 
 /// The kinds of stimulus by name: `power`, `process-value`, `condition`, `setting`.

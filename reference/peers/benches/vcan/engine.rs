@@ -78,6 +78,7 @@ fn play(interface: &str, read: &Read, times: u32) -> f64 {
     assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
     let device = load_device(&file("device.yaml", DEVICE)).unwrap();
     let bench = Bench {
+        depth: fieldproof_suite::model::Depth::Default,
         fixed_rates: Default::default(),
         ports: ["can".to_owned()].into(),
         modbus_tcp: [].into(),

@@ -8,7 +8,7 @@ use fieldproof_record::{Event, Sink};
 use fieldproof_report::{Console, ConsoleOptions, LaneSummary};
 
 use crate::complaint::Complaint;
-use crate::library::{Device, Library};
+use crate::library::Device;
 use crate::player::{self, Plan};
 use crate::progress::Progress;
 use crate::reports::{LaneCases, LaneReports, Reports};
@@ -85,7 +85,6 @@ impl Sink for LaneSink<'_, '_> {
 
 /// Plays every device in a thread of its own.
 pub(super) fn play(
-    library: &Library,
     devices: &[&Device],
     plan: &Plan,
     reports: &Reports,
@@ -99,7 +98,7 @@ pub(super) fn play(
             lane,
             reports,
         };
-        let played = player::play(library, device, plan, &mut sink, stop);
+        let played = player::play(device, plan, &mut sink, stop);
         stage.show(|console| console.end(lane));
         played.map_err(|error| Complaint::bench(error.to_string()))?;
         sink.reports.finish()

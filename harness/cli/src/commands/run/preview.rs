@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::complaint::Complaint;
 use crate::exit::Exit;
-use crate::library::{Device, Library};
+use crate::library::Device;
 use crate::options::{Format, RunOptions};
 use crate::player::{self, Plan, PlannedCase};
 use crate::screen::Screen;
@@ -21,7 +21,6 @@ struct Planned<'a> {
 
 /// Shows what would be played on what, and what is skipped and why.
 pub(super) fn show(
-    library: &Library,
     devices: &[&Device],
     plan: &Plan,
     options: &RunOptions,
@@ -30,8 +29,8 @@ pub(super) fn show(
     let mut text = String::new();
     let mut all = Vec::new();
     for device in devices {
-        let preview = player::preview(library, device, plan)
-            .map_err(|error| Complaint::bench(error.to_string()))?;
+        let preview =
+            player::preview(device, plan).map_err(|error| Complaint::bench(error.to_string()))?;
         for (suite, cases) in preview {
             let suite = suite.head.suite.as_str();
             text.push_str(&suite_text(suite, device.name(), &cases, options.quiet));

@@ -1,0 +1,247 @@
+//! What is found in a small dictionary.
+
+#![allow(clippy::unwrap_used)]
+
+use fieldproof_dictionary::{Dictionary, eds};
+use fieldproof_suite::{Columns, SourceFile, load};
+
+use super::{fill, spread};
+
+const EDS: &str = "[DeviceInfo]
+[1000]
+ParameterName=Device type
+ObjectType=7
+DataType=7
+AccessType=ro
+DefaultValue=0x192
+[1017]
+ParameterName=Heartbeat
+ObjectType=7
+DataType=6
+AccessType=rw
+DefaultValue=0
+HighLimit=1000
+[1018]
+ParameterName=Identity
+ObjectType=9
+SubNumber=2
+[1018sub0]
+ParameterName=Number
+ObjectType=7
+DataType=5
+AccessType=const
+DefaultValue=2
+[1018sub2]
+ParameterName=Product
+ObjectType=7
+DataType=7
+AccessType=ro
+[1800]
+ParameterName=TPDO
+ObjectType=9
+SubNumber=2
+[1800sub0]
+ParameterName=Number
+ObjectType=7
+DataType=5
+AccessType=ro
+DefaultValue=1
+[1800sub1]
+ParameterName=COB-ID
+ObjectType=7
+DataType=7
+AccessType=rw
+DefaultValue=$NODEID+0x180
+[1A00]
+ParameterName=Mapping
+ObjectType=9
+SubNumber=2
+[1A00sub0]
+ParameterName=Number
+ObjectType=7
+DataType=5
+AccessType=rw
+DefaultValue=1
+[1A00sub1]
+ParameterName=First
+ObjectType=7
+DataType=7
+AccessType=rw
+DefaultValue=0x60000010
+[2000]
+ParameterName=Angle
+ObjectType=7
+DataType=3
+AccessType=rww
+DefaultValue=0xFFFE
+LowLimit=-10
+HighLimit=32767
+PDOMapping=1
+[2001]
+ParameterName=Long
+ObjectType=7
+DataType=0x13
+AccessType=rw
+DefaultValue=1
+LowLimit=0
+HighLimit=0x100
+";
+
+fn dictionary() -> Dictionary {
+    eds::read(EDS).dictionary
+}
+
+/// The ids and titles of the cases that a table with `query` makes.
+fn cases(head: &str, title: &str) -> Vec<String> {
+    let text = format!(
+        "language: 1\nsuite: s\ntitle: S\nprotocol: canopen\nsources: {{a: {{document: A}}}}\ncases:\n  \
+         - case: c\n    title: \"{title}\"\n    cite: a\n    {head}\n    steps:\n      - sdo-read: {{object: \"1000:00\", as: u32}}\n"
+    );
+    let loaded = load(&[SourceFile {
+        path: "s.yaml".into(),
+        text,
+    }]);
+    assert_eq!(loaded.diagnostics, []);
+    let suite = fill(&loaded.suites[0], Some(&dictionary()), 5);
+    let environment = fieldproof_suite::Environment::default();
+    suite
+        .cases()
+        .map(|case| match case.absent() {
+            Some(absent) => format!("{}: {absent}", case.id()),
+            None => format!("{} {}", case.id(), case.lower(&environment).unwrap().title),
+        })
+        .collect()
+}
+
+#[test]
+fn each_object_is_a_case() {
+    assert_eq!(
+        cases(
+            "each: {o: {index: 1000-1FFF, access: readable, sub: 0}}",
+            "{o-name} {o-type} {o-size} {o-mapping}"
+        ),
+        [
+            "s/c[o=1000:00] Device type u32 4 0x10000020",
+            "s/c[o=1017:00] Heartbeat u16 2 0x10170010",
+            "s/c[o=1018:00] Number u8 1 0x10180008",
+            "s/c[o=1800:00] Number u8 1 0x18000008",
+            "s/c[o=1A00:00] Number u8 1 0x1A000008",
+        ]
+    );
+}
+
+#[test]
+fn the_first_is_chosen_beside_a_table() {
+    assert_eq!(
+        cases(
+            "choose: {t: {access: rw, has: above}, u: {type: i16, has: [default, low, below]}}\n    each: [{n: 1}, {n: 2}]",
+            "{n} {t} {t-above} {u} {u-default} {u-low} {u-below}"
+        ),
+        [
+            "s/c[n=1] 1 1017:00 1001 2000:00 -2 -10 -11",
+            "s/c[n=2] 2 1017:00 1001 2000:00 -2 -10 -11",
+        ]
+    );
+}
+
+#[test]
+fn what_is_not_there_is_said() {
+    assert_eq!(
+        cases(
+            "each: {o: {access: wo, type: [u8, u16], index: 1000-1FFF}}",
+            "{o}"
+        ),
+        ["s/c: the device has no object that is wo, of type u8 or u16, at 1000h to 1FFFh"]
+    );
+    // The highest value of the type has none above it, and one without limits neither.
+    assert_eq!(
+        cases("choose: {o: {index: [1000, 2000], has: above}}", "{o}"),
+        ["s/c: the device has no object with a value above its highest, at 1000h or 2000h"]
+    );
+}
+
+#[test]
+fn numbers_without_a_word_are_bytes() {
+    assert_eq!(
+        cases(
+            "choose: {o: {type: i48, has: [default, above, below]}}",
+            "{o-default}/{o-above}/{o-below}"
+        ),
+        ["s/c 01 00 00 00 00 00/01 01 00 00 00 00/FF FF FF FF FF FF"]
+    );
+}
+
+#[test]
+fn mappable_by_direction() {
+    assert_eq!(
+        cases("each: {o: {pdo: rpdo}}", "{o}"),
+        ["s/c[o=2000:00] 2000:00"]
+    );
+    assert_eq!(
+        cases("each: {o: {pdo: tpdo}}", "{o}"),
+        ["s/c: the device has no object that a TPDO may carry"]
+    );
+    assert_eq!(
+        cases("each: {o: {pdo: no, index: 2000-2FFF}}", "{o}"),
+        ["s/c[o=2001:00] 2001:00"]
+    );
+}
+
+#[test]
+fn pdos_have_parameters() {
+    assert_eq!(
+        cases(
+            "choose: {p: {is: tpdo}}",
+            "{p} {p-communication} {p-mapping} {p-identifier} {p-length}"
+        ),
+        ["s/c 1 1800 1A00 185 2"]
+    );
+    assert_eq!(
+        cases("choose: {p: {is: rpdo}}", "{p}"),
+        ["s/c: the device has no RPDO"]
+    );
+}
+
+#[test]
+fn the_gaps_are_between_and_beside() {
+    assert_eq!(
+        cases(
+            "each: {o: {is: absent-sub-index, index: [1017, 1018]}}",
+            "{o-sub}"
+        ),
+        ["s/c[o=1017:01] 1", "s/c[o=1018:01] 1", "s/c[o=1018:03] 3"]
+    );
+    assert_eq!(
+        cases(
+            "each: {o: {is: absent-object, index: 1000-1018}}",
+            "{o-index}"
+        ),
+        [
+            "s/c[o=1001:00] 0x1001",
+            "s/c[o=100B:00] 0x100B",
+            "s/c[o=1016:00] 0x1016"
+        ]
+    );
+}
+
+#[test]
+fn a_few_are_spread_over_all() {
+    let all: Vec<Columns> = (0..10).map(|it: u8| vec![("", it.to_string())]).collect();
+    let of = |most| {
+        let taken = spread(all.clone(), Some(most));
+        taken
+            .iter()
+            .map(|columns| columns[0].1.clone())
+            .collect::<String>()
+    };
+    assert_eq!(
+        (of(1), of(2), of(4), of(10), of(99)),
+        (
+            "0".into(),
+            "09".into(),
+            "0369".into(),
+            "0123456789".into(),
+            "0123456789".into()
+        )
+    );
+}
