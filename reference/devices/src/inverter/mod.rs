@@ -9,13 +9,38 @@ use fieldproof_link::{
     Transmission,
 };
 
-use crate::modbus::{Behaviour, ModbusSlave, Registers as _};
+use crate::catalogue::{DeviceKind, Medium, PortKind, Settings, UnknownFault};
+use crate::modbus::{self, Behaviour, ModbusSlave, Registers as _};
 pub use registers::{InverterRegisters, LINE, STATION};
+
+/// What can be built.
+pub(crate) const KIND: DeviceKind = DeviceKind {
+    name: "teco-inverter",
+    title: "TECO A510 inverter",
+    ports: &[PortKind {
+        role: "serial",
+        medium: Medium::Serial(LINE),
+    }],
+    faults: modbus::faults::COMMON,
+    variants: &[modbus::variants::SLOW],
+    build,
+};
+
+fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
+    let behaviour = KIND.behaviour(crate::Behaviour::default(), settings)?;
+    let registers = InverterRegisters::at(settings.address.unwrap_or(STATION));
+    let slave = ModbusSlave::new(registers, behaviour.modbus, settings.seed);
+    Ok(Box::new(Inverter {
+        slave: slave.over(settings.framing),
+        powered: true,
+    }))
+}
 
 /// The inverter: one serial port, [`LINE`], station [`STATION`].
 #[derive(Debug, Clone)]
 pub struct Inverter {
     slave: ModbusSlave<InverterRegisters>,
+    powered: bool,
 }
 
 impl Inverter {
@@ -28,6 +53,7 @@ impl Inverter {
     pub fn behaving(behaviour: Behaviour, seed: u64) -> Inverter {
         Inverter {
             slave: ModbusSlave::new(InverterRegisters::default(), behaviour, seed),
+            powered: true,
         }
     }
 
@@ -35,6 +61,7 @@ impl Inverter {
     pub fn over(self, framing: Option<Framing>) -> Inverter {
         Inverter {
             slave: self.slave.over(framing),
+            ..self
         }
     }
 
@@ -46,21 +73,28 @@ impl Inverter {
 
 impl Participant for Inverter {
     fn line(&self, _: usize) -> Line {
-        self.slave.line()
+        match self.powered {
+            true => self.slave.line(),
+            false => Line::Off,
+        }
     }
 
     fn receive(&mut self, now: Instant, _: usize, reception: Reception, _: &mut Outbox) {
-        if let Reception::Character(character) = reception {
+        if let Reception::Character(character) = reception
+            && self.powered
+        {
             self.slave.receive(now, character);
         }
     }
 
     fn wake_at(&self) -> Option<Instant> {
-        self.slave.wake_at()
+        self.slave.wake_at().filter(|_| self.powered)
     }
 
     fn wake(&mut self, now: Instant, out: &mut Outbox) {
-        if let Some(characters) = self.slave.wake(now) {
+        if self.powered
+            && let Some(characters) = self.slave.wake(now)
+        {
             out.send(0, Transmission::Characters(characters));
         }
     }
@@ -72,22 +106,33 @@ impl Participant for Inverter {
         stimulus: &Stimulus,
         _: &mut Outbox,
     ) -> Result<(), NotOffered> {
+        let registers = self.slave.registers_mut();
         match stimulus {
-            Stimulus::ProcessValue { name, value } => {
-                let registers = self.slave.registers_mut();
-                registers.set_process_value(name, *value)
+            Stimulus::Power { on } => {
+                if *on && !self.powered {
+                    *registers = InverterRegisters::at(registers.address());
+                    self.slave.restart();
+                }
+                self.powered = *on;
+                Ok(())
             }
+            Stimulus::ProcessValue { name, value } => registers.set_process_value(name, *value),
+            Stimulus::Setting { name, value } if name == "address" => registers.set_address(*value),
             _ => Err(NotOffered),
         }
     }
 
     fn offers(&self) -> Vec<StimulusKind> {
-        vec![StimulusKind::ProcessValue]
+        vec![
+            StimulusKind::Power,
+            StimulusKind::ProcessValue,
+            StimulusKind::Setting,
+        ]
     }
 
     /// Every register: `register 2501`, the value in decimal.
     fn state(&self) -> BTreeMap<String, String> {
-        self.slave.registers().state()
+        self.slave.state()
     }
 }
 

@@ -91,8 +91,11 @@ fn plays_as_a_participant() {
     let state = inverter.state();
     assert_eq!(state["register 2520"], "261");
     assert_eq!(state["register 2524"], "500");
-    assert_eq!(state.len(), 48);
-    let wrong = Stimulus::Power { on: false };
+    assert_eq!(state.len(), 49);
+    let wrong = Stimulus::Condition {
+        name: "rain".to_owned(),
+        active: true,
+    };
     let refused = inverter.stimulate(now, &wrong, &mut out);
     assert_eq!(refused, Err(NotOffered));
 }
