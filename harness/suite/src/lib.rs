@@ -7,6 +7,7 @@
 //! [`load_bench`].
 
 pub mod bench;
+pub mod catalogue;
 pub mod code;
 pub mod device;
 mod diagnostic;
@@ -30,7 +31,7 @@ mod yaml;
 pub use diagnostic::{Diagnostic, Position, Severity};
 pub use expand::Environment;
 pub use load::{
-    CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_device, load_registers,
-    unknown_checks,
+    CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_catalogue, load_device,
+    load_registers, unknown_checks, unknown_entries,
 };
-pub use schema::{bench_schema, device_schema, registers_schema, schema};
+pub use schema::{bench_schema, catalogue_schema, device_schema, registers_schema, schema};
