@@ -14,7 +14,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_run::{fill, suites_for};
+use fieldproof_run::{Known, fill, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
@@ -80,10 +80,12 @@ impl Device {
     }
 
     fn fill(&mut self, suites: &[Suite]) {
-        let canopen = self.description.canopen.as_ref();
-        let node = canopen.map_or(1, |canopen| canopen.node);
+        let known = Known {
+            dictionary: self.dictionary.as_ref(),
+            registers: self.registers.as_ref(),
+        };
         self.suites = suites_for(suites, &self.description)
-            .map(|suite| fill(suite, self.dictionary.as_ref(), node))
+            .map(|suite| fill(suite, &self.description, known))
             .collect();
     }
 

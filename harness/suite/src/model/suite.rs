@@ -118,6 +118,8 @@ pub enum Need {
     Stimulus(StimulusName),
     /// Objects of the device's dictionary: `object: "1029:01"`.
     Objects(Vec<ObjectAddress>),
+    /// Modbus functions that the description claims: `function: [3, 8/4]`.
+    Functions(Vec<device::FunctionCode>),
 }
 
 /// How thorough a run is.

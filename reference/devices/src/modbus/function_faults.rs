@@ -21,14 +21,8 @@ faults! {
     #[doc = "What any slave on a serial line can have."] LINE:
     "crc-half-checked", "MODBUS over serial line V1.02, 2.5.1.2: a frame with a wrong CRC is discarded",
         "answers a request if the first byte of its CRC is right", crc_half_checked = true;
-    "parity-ignored", "MODBUS over serial line V1.02, 2.5.1: a frame with an error in a character is discarded",
-        "answers a request that has a character with a parity error", parity_ignored = true;
     "runts-kept", "MODBUS over serial line V1.02, 2.5.1.1: a frame begins after a silence",
         "keeps bytes that were too few for a frame, and puts them before the next one", frame_remains = Some(Remains::OfRunts);
-    "gaps-ignored", "MODBUS over serial line V1.02, 2.5.1.1: a frame is a continuous stream of characters",
-        "answers a request in which characters are up to 3.5 characters apart", frame_remains = Some(Remains::OfTornFrames);
-    "long-frame-cut", "MODBUS over serial line V1.02, 2.5.1: a frame has at most 256 bytes",
-        "answers the first 256 bytes of a frame that is longer", frame_remains = Some(Remains::OfLongFrames);
     "broadcast-ignored", "MODBUS over serial line V1.02, 2.1: all slaves must accept the broadcast for writing functions",
         "does nothing for a request to address 0", broadcast_ignored = true;
 
@@ -89,6 +83,4 @@ faults! {
         "answers every category of the identification with all objects", categories_ignored = true;
     "unknown-object-answered", "MODBUS application protocol V1.1b3, 6.21: a single object that does not exist is answered with exception 02",
         "answers the vendor's name for an object that does not exist", unknown_object_answered = true;
-    "more-follows-missing", "MODBUS application protocol V1.1b3, 6.21: more follows is FFh where objects are left",
-        "says that no more objects follow where some do", more_follows_missing = true;
 }
