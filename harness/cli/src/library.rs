@@ -14,7 +14,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_run::{Known, fill, suites_for};
+use fieldproof_run::{Known, fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
@@ -79,14 +79,28 @@ impl Device {
         self.simulated().map_or(&[], |kind| kind.variants)
     }
 
+    /// The device with at most `most` rows of every table that its dictionary or register map fills.
+    pub(crate) fn with_some_of_each(&self, suites: &[Suite], most: u16) -> Device {
+        let known = self.known();
+        let some = |suite| fill_some(suite, &self.description, known, most);
+        Device {
+            suites: suites_for(suites, &self.description).map(some).collect(),
+            ..self.clone()
+        }
+    }
+
     fn fill(&mut self, suites: &[Suite]) {
-        let known = Known {
-            dictionary: self.dictionary.as_ref(),
-            registers: self.registers.as_ref(),
-        };
+        let known = self.known();
         self.suites = suites_for(suites, &self.description)
             .map(|suite| fill(suite, &self.description, known))
             .collect();
+    }
+
+    fn known(&self) -> Known<'_> {
+        Known {
+            dictionary: self.dictionary.as_ref(),
+            registers: self.registers.as_ref(),
+        }
     }
 
     fn simulated(&self) -> Option<&'static DeviceKind> {

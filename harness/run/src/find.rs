@@ -28,6 +28,11 @@ pub fn fill(suite: &Suite, device: &DeviceDescription, known: Known<'_>) -> Suit
     suite.filled(&|query| find(query, device, known))
 }
 
+/// As [`fill`], with at most `most` rows of every table that is filled, spread over all there are.
+pub fn fill_some(suite: &Suite, device: &DeviceDescription, known: Known<'_>, most: u16) -> Suite {
+    suite.filled(&|query| spread(find(query, device, known), Some(most)))
+}
+
 /// Everything that is as `query` says, in the order of the dictionary or of the addresses.
 fn find(query: &Query, device: &DeviceDescription, known: Known<'_>) -> Vec<Columns> {
     let node = device.canopen.as_ref().map_or(1, |canopen| canopen.node);

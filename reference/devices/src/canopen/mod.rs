@@ -35,7 +35,7 @@ mod write;
 pub(crate) use abort::Abort;
 pub(crate) use address::Address;
 pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, StateCodes};
-pub(crate) use emergency::HARDWARE;
+pub(crate) use emergency::{DeviceError, HARDWARE};
 use nmt::State;
 pub use object_fault::{ObjectFault, ObjectFaultKind};
 pub(crate) use objects::Objects;

@@ -99,7 +99,8 @@ impl Participant for Inverter {
         }
     }
 
-    /// Process values are registers, the number in hexadecimal: `register 2520`.
+    /// Process values are registers, the number in hexadecimal: `register 2520`. With the power off it takes no part;
+    /// after power-on its registers are those of a new one.
     fn stimulate(
         &mut self,
         _: Instant,
