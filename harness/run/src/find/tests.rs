@@ -269,6 +269,13 @@ fn the_gaps_are_between_and_beside() {
             "s/c[o=1016:00] 0x1016"
         ]
     );
+    assert_eq!(
+        cases(
+            "each: {o: {is: absent-object, index: 1280-12FF}}",
+            "{o-index}"
+        ),
+        ["s/c[o=1280:00] 0x1280", "s/c[o=12FF:00] 0x12FF"]
+    );
 }
 
 #[test]

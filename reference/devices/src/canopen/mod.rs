@@ -22,6 +22,7 @@ mod pdo_rules;
 mod profile;
 mod queue;
 mod sdo;
+pub(crate) mod sdo_faults;
 pub(crate) mod service_faults;
 mod services;
 mod slave;
@@ -40,5 +41,8 @@ use nmt::State;
 pub use object_fault::{ObjectFault, ObjectFaultKind};
 pub(crate) use objects::Objects;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
-pub use sdo::{BlockTransfer, Recovery};
+pub use sdo::{
+    BlockTransfer, ClientAbort, OrdinaryTransfer, ReadOnly, Recovery, SecondInitiate, ShortRequest,
+    StraySegment,
+};
 pub(crate) use slave::{Factory, Slave};

@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, faults, service_faults,
+    block_faults, faults, sdo_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -47,13 +47,25 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_BIT_TIMING_MISSING,
 ];
 const FAULTS: [Fault;
-    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
-    all_of(&[
-        faults::COMMON,
-        service_faults::ALL,
-        OWN_FAULTS,
-        block_faults::BLOCK,
-    ]);
+    faults::COMMON.len()
+        + service_faults::ALL.len()
+        + OWN_FAULTS.len()
+        + sdo_faults::ACCESS.len()
+        + sdo_faults::SEGMENTED.len()
+        + sdo_faults::ANY_LENGTH.len()
+        + sdo_faults::SERVERS.len()
+        + sdo_faults::REASONS.len()
+        + block_faults::BLOCK.len()] = all_of(&[
+    faults::COMMON,
+    service_faults::ALL,
+    OWN_FAULTS,
+    sdo_faults::ACCESS,
+    sdo_faults::SEGMENTED,
+    sdo_faults::ANY_LENGTH,
+    sdo_faults::SERVERS,
+    sdo_faults::REASONS,
+    block_faults::BLOCK,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -69,6 +81,9 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::NO_TPDO_ON_START,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
+        canopen::variants::GENERAL_ABORT_CODES,
+        canopen::variants::CAREFUL_SDO,
+        canopen::variants::TERSE_SDO,
         canopen::variants::SMALL_BLOCKS,
     ],
     build,
