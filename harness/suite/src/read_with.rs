@@ -122,6 +122,14 @@ pub(crate) fn optional_address<'de, D: Deserializer<'de>>(
     address.map(|address| within(address, 1, 247)).transpose()
 }
 
+/// How many registers are alike.
+pub(crate) fn ten_thousand<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u16>, D::Error> {
+    let count = Option::<u16>::deserialize(deserializer)?;
+    count.map(|count| within(count, 1, 10_000)).transpose()
+}
+
 /// How often a `repeat` is played.
 pub(crate) fn times<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     within(u32::deserialize(deserializer)?, 1, 1_000_000)
