@@ -22,8 +22,10 @@ impl Slave {
         self.identified = 0;
         self.scanned = 0;
         self.second_sdo = (None, Server::default());
+        if self.profile.consumes_heartbeats {
+            self.consumers = Consumers::read(&self.objects, &self.behaviour, now);
+        }
         if self.profile.complete {
-            self.consumers = Consumers::read(&self.objects);
             self.reconfigure_second_sdo();
         }
     }

@@ -102,6 +102,12 @@ impl Slave {
                 return Err(Abort::INVALID_VALUE);
             }
         }
+        if self.profile.consumes_heartbeats
+            && address.index() == consumers::CONSUMER_TIME
+            && address.sub() != 0
+        {
+            consumers::check(&self.objects, &self.behaviour, address, number)?;
+        }
         if self.profile.complete {
             self.service_permitted(address, number)?;
         }
@@ -117,7 +123,6 @@ impl Slave {
             _ if address == emergency::COB_ID => cob_id::check(number(address), value, valid),
             _ if address == time::COB_ID => cob_id::check(number(address), value, time::in_use),
             (SECOND_SDO_SERVER, 1 | 2) => cob_id::check(number(address), value, valid),
-            (consumers::CONSUMER_TIME, 1..) => consumers::check(&self.objects, address, value),
             _ => Ok(()),
         }
     }
@@ -178,12 +183,12 @@ impl Slave {
         } else if address == PRODUCER_TIME {
             self.reconfigure_heartbeat(now);
         } else if address == GUARD_TIME || address == LIFE_TIME_FACTOR {
-            self.reconfigure_guarding();
+            self.reconfigure_guarding(now);
         } else if Some(address) == self.profile.clock_object {
             self.set_clock(now);
         } else if self.profile.complete && address == time::COB_ID {
             self.reconfigure_time(now);
-        } else if self.profile.complete && index == consumers::CONSUMER_TIME {
+        } else if self.profile.consumes_heartbeats && index == consumers::CONSUMER_TIME {
             self.reconfigure_consumers(now);
         } else if self.profile.complete && index == SECOND_SDO_SERVER {
             self.reconfigure_second_sdo();

@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, faults, service_faults,
+    block_faults, error_control_faults, faults, nmt_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -47,13 +47,23 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_BIT_TIMING_MISSING,
 ];
 const FAULTS: [Fault;
-    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
-    all_of(&[
-        faults::COMMON,
-        service_faults::ALL,
-        OWN_FAULTS,
-        block_faults::BLOCK,
-    ]);
+    faults::COMMON.len()
+        + nmt_faults::COMMON.len()
+        + nmt_faults::REST.len()
+        + error_control_faults::COMMON.len()
+        + error_control_faults::REST.len()
+        + service_faults::ALL.len()
+        + OWN_FAULTS.len()
+        + block_faults::BLOCK.len()] = all_of(&[
+    faults::COMMON,
+    nmt_faults::COMMON,
+    nmt_faults::REST,
+    error_control_faults::COMMON,
+    error_control_faults::REST,
+    service_faults::ALL,
+    OWN_FAULTS,
+    block_faults::BLOCK,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -68,6 +78,9 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::TPDO_WITH_FIRST_SYNC,
         canopen::variants::NO_TPDO_ON_START,
         canopen::variants::HEARTBEAT_AT_ONCE,
+        canopen::variants::LONG_NMT_COMMANDS,
+        canopen::variants::GUARDED_BESIDE_HEARTBEAT,
+        canopen::variants::GUARDED_BY_ONE_BYTE,
         canopen::variants::SLOW,
         canopen::variants::SMALL_BLOCKS,
     ],
@@ -96,6 +109,7 @@ fn profile() -> Profile {
         boot_time: Duration::from_millis(5),
         produces_sync: true,
         guarding: true,
+        consumes_heartbeats: true,
         transmit_event: TransmitEvent::Change,
         lowest_transmit_type: 0,
         lss: Some(LssAbilities {

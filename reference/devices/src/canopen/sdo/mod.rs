@@ -104,7 +104,8 @@ impl Slave {
     /// | 1 to 3 | index (low byte first) and sub-index where a transfer begins or is aborted |
     /// | 4 to 7 | data of an expedited transfer, or the size of a segmented one |
     pub(super) fn serve(&mut self, now: Instant, frame: &Frame, application: &mut dyn Application) {
-        if !self.state.permits(Service::Sdo, &self.behaviour) {
+        let silent = !self.state.permits(Service::Sdo, &self.behaviour);
+        if silent && !self.behaviour.nmt.requests_done_in_stopped {
             return;
         }
         let Ok(request) = <[u8; 8]>::try_from(frame.bytes()) else {
@@ -118,6 +119,9 @@ impl Slave {
             self.abort(now, address, abort);
         }
         self.await_block_request(now);
+        if silent {
+            self.queue.retain(|service| service != Service::Sdo);
+        }
     }
 
     fn serve_ordinary(
