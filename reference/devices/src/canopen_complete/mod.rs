@@ -204,4 +204,8 @@ impl Participant for Complete {
 }
 
 #[cfg(test)]
+mod error_control_tests;
+#[cfg(test)]
+mod nmt_tests;
+#[cfg(test)]
 mod tests;
