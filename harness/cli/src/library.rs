@@ -14,7 +14,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_run::{fill, suites_for};
+use fieldproof_run::{fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
@@ -75,6 +75,17 @@ impl Device {
     /// The legal variants of its reference device; a real one is what it is.
     pub fn variants(&self) -> &'static [Variant] {
         self.simulated().map_or(&[], |kind| kind.variants)
+    }
+
+    /// The device with at most `most` rows of every table that its dictionary fills.
+    pub(crate) fn with_some_of_each(&self, suites: &[Suite], most: u16) -> Device {
+        let canopen = self.description.canopen.as_ref();
+        let node = canopen.map_or(1, |canopen| canopen.node);
+        let some = |suite| fill_some(suite, self.dictionary.as_ref(), node, most);
+        Device {
+            suites: suites_for(suites, &self.description).map(some).collect(),
+            ..self.clone()
+        }
     }
 
     fn fill(&mut self, suites: &[Suite]) {

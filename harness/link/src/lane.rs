@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use crate::{Instant, Line, Participant, Reception, Stimulus, StimulusKind, Transmission};
+use crate::{
+    Instant, Line, NotOffered, Participant, Reception, Stimulus, StimulusKind, Transmission,
+};
 
 /// Which of the lane's ports, by its place in [`Lane::ports`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -156,6 +158,16 @@ pub trait Lane {
     /// # Errors
     /// [`StimulusError`]: not offered here, or it failed.
     fn stimulate(&mut self, stimulus: &Stimulus) -> Result<(), StimulusError>;
+
+    /// Does something to a companion on `port`. It is the tester's own, so no bench need offer that.
+    ///
+    /// # Errors
+    /// [`NotOffered`]: there is none, or it has no such thing.
+    fn stimulate_companion(
+        &mut self,
+        port: PortIndex,
+        stimulus: &Stimulus,
+    ) -> Result<(), NotOffered>;
 
     /// Lets `companion` take part through the tester's port `port`; its own port 0 is that port.
     fn attach(&mut self, port: PortIndex, companion: Box<dyn Participant>) -> CompanionIndex;

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::time::Duration;
 
 use crate::{
-    Arrival, Character, CompanionIndex, Instant, Lane, Line, LinkError, Origin, Parity,
+    Arrival, Character, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Origin, Parity,
     Participant, PortIndex, PortProperties, Reception, Sent, Stimulus, StimulusError, StimulusKind,
     Transmission,
 };
@@ -130,6 +130,14 @@ impl<L: Lane> Lane for FaultyLine<L> {
 
     fn stimulate(&mut self, stimulus: &Stimulus) -> Result<(), StimulusError> {
         self.lane.stimulate(stimulus)
+    }
+
+    fn stimulate_companion(
+        &mut self,
+        port: PortIndex,
+        stimulus: &Stimulus,
+    ) -> Result<(), NotOffered> {
+        self.lane.stimulate_companion(port, stimulus)
     }
 
     fn attach(&mut self, port: PortIndex, companion: Box<dyn Participant>) -> CompanionIndex {

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use fieldproof_dictionary::Dictionary;
 use fieldproof_link::StimulusKind;
-use fieldproof_suite::device::{DeviceDescription, Feature};
+use fieldproof_suite::device::{DeviceDescription, Feature, PortDescription};
 use fieldproof_suite::model::{
     Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
-    SendBytes, Step, StimulusName,
+    SendBytes, Step, Stimulate, StimulusName,
 };
 use fieldproof_suite::scalar::ObjectAddress;
 
@@ -52,6 +52,7 @@ pub fn skip_reason(
         .or_else(|| missing_permission(case, device, bench))
         .or_else(|| wrong_address(case, bench))
         .or_else(|| fixed_rate(case, bench))
+        .or_else(|| missing_companion(case, device))
 }
 
 fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
@@ -111,6 +112,26 @@ fn lacks_object<'s>(
     steps.into_iter().find_map(|step| match &step.value {
         Step::Repeat(repeat) => lacks_object(&repeat.steps, dictionary),
         step => missing_object(step, dictionary),
+    })
+}
+
+/// Something is done to what the tester plays on a port, and there it plays nothing.
+fn missing_companion(case: &Case, device: &DeviceDescription) -> Option<String> {
+    let plays = |role: &str| {
+        matches!(
+            device.ports.get(role),
+            Some(PortDescription::Serial {
+                companion: Some(_),
+                ..
+            })
+        )
+    };
+    let mut steps = case.control.iter().chain(&case.steps);
+    steps.find_map(|step| match &step.value {
+        Step::Stimulate(Stimulate::Companion { port, .. }) if !plays(port) => {
+            Some(format!("the tester plays nothing on port {port:?}"))
+        }
+        _ => None,
     })
 }
 
@@ -274,6 +295,15 @@ pub const fn feature_name(feature: Feature) -> &'static str {
         Feature::LssFastscan => "lss-fastscan",
         Feature::RemoteFrames => "remote-frames",
         Feature::Cia402 => "cia402",
+        Feature::ProfilePosition => "profile-position",
+        Feature::Velocity => "velocity",
+        Feature::ProfileVelocity => "profile-velocity",
+        Feature::TorqueProfile => "torque-profile",
+        Feature::Homing => "homing",
+        Feature::InterpolatedPosition => "interpolated-position",
+        Feature::CyclicSynchronousPosition => "cyclic-synchronous-position",
+        Feature::CyclicSynchronousVelocity => "cyclic-synchronous-velocity",
+        Feature::CyclicSynchronousTorque => "cyclic-synchronous-torque",
         Feature::Cia406 => "cia406",
         Feature::ModbusRtu => "modbus-rtu",
         Feature::ModbusTcp => "modbus-tcp",

@@ -15,6 +15,11 @@ pub fn fill(suite: &Suite, dictionary: Option<&Dictionary>, node: u8) -> Suite {
     suite.filled(&|query| find(query, dictionary, node))
 }
 
+/// As [`fill`], with at most `most` rows of every table that the dictionary fills, spread over all there are.
+pub fn fill_some(suite: &Suite, dictionary: Option<&Dictionary>, node: u8, most: u16) -> Suite {
+    suite.filled(&|query| spread(find(query, dictionary, node), Some(most)))
+}
+
 /// Everything in `dictionary` that is as `query` says, in the order of the dictionary.
 fn find(query: &Query, dictionary: Option<&Dictionary>, node: u8) -> Vec<Columns> {
     let Some(dictionary) = dictionary else {

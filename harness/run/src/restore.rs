@@ -170,6 +170,9 @@ impl Tester<'_> {
 
     fn put_back_all(&mut self, case: &Case, as_found: Option<NmtState>) -> Result<(), Stop> {
         self.stop_sync()?;
+        for port in self.undo.take_companions() {
+            self.renew_companion(port)?;
+        }
         if case.effects.contains(&Effect::Moves) {
             self.stop_drive()?;
         }
@@ -226,6 +229,7 @@ impl Tester<'_> {
             }),
             Undo::Setting(name, value) => self.set(&name, value),
             Undo::Line(port, line) => Ok(self.session.lane().set_line(port, line)?),
+            Undo::Companion(port) => self.renew_companion(port),
         }
     }
 

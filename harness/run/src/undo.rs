@@ -18,6 +18,8 @@ pub(crate) enum Undo {
     Setting(String, i64),
     /// The tester's side of a port was set so.
     Line(PortIndex, Line),
+    /// What the tester plays on a port was as new.
+    Companion(PortIndex),
 }
 
 impl Undo {
@@ -33,6 +35,7 @@ impl Undo {
             (Undo::Condition(name), Undo::Condition(other)) => name == other,
             (Undo::Setting(name, _), Undo::Setting(other, _)) => name == other,
             (Undo::Line(port, _), Undo::Line(other, _)) => port == other,
+            (Undo::Companion(port), Undo::Companion(other)) => port == other,
             _ => false,
         }
     }
@@ -73,6 +76,19 @@ impl UndoStack {
     /// The last thing was not changed after all.
     pub(crate) fn forget_last(&mut self) {
         self.entries.pop();
+    }
+
+    /// Takes out the ports whose companions are to be put back: before everything else, which may need them.
+    pub(crate) fn take_companions(&mut self) -> Vec<PortIndex> {
+        let mut ports = Vec::new();
+        self.entries.retain(|undo| match undo {
+            Undo::Companion(port) => {
+                ports.push(*port);
+                false
+            }
+            _ => true,
+        });
+        ports
     }
 
     pub(crate) fn clear(&mut self) {

@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use fieldproof_suite::model::{ReadExpectation, Step};
+use fieldproof_suite::model::{CompanionStimulus, PowerAction, ReadExpectation, Step, Stimulate};
 use fieldproof_suite::scalar::{Bytes, Number, Value};
 use fieldproof_suite::{Diagnostic, Environment, Loaded, SourceFile, load};
 
@@ -109,6 +109,27 @@ fn a_table_makes_cases() {
         suite.line_text(case.steps[1].at.line),
         "      - nmt: \"{command}\""
     );
+}
+
+#[test]
+fn what_the_tester_plays_is_no_stimulus_that_a_bench_must_offer() {
+    let steps = steps(
+        "- stimulate: {companion: inverter, power: off}
+- stimulate: {companion: inverter, process-value: register 2523, to: 500}
+- sdo-read: {object: \"2025:24\", as: u16, expect: 500}",
+    );
+    let on_inverter = |stimulus| {
+        Step::Stimulate(Stimulate::Companion {
+            port: "inverter".to_owned(),
+            stimulus,
+        })
+    };
+    let off = CompanionStimulus::Power(PowerAction::Off);
+    let value = CompanionStimulus::ProcessValue {
+        name: "register 2523".to_owned(),
+        to: 500,
+    };
+    assert_eq!(steps[..2], [on_inverter(off), on_inverter(value)]);
 }
 
 #[test]

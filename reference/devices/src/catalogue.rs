@@ -4,8 +4,9 @@ use std::fmt;
 
 use fieldproof_link::{Framing, Participant, SerialSettings};
 
+use crate::liaomiao_encoder::Behaviour as EncoderBehaviour;
 use crate::teco_jn5_cm_can::Behaviour as GatewayBehaviour;
-use crate::{canopen, modbus};
+use crate::{canopen, drive, modbus};
 
 /// A kind of reference device.
 #[derive(Debug, Clone, Copy)]
@@ -75,7 +76,7 @@ pub struct Fault {
     /// What one sees, in the words of a bug report.
     pub words: &'static str,
     /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
-    /// `sync`, `time`, `store`, `emergency`, `gateway`.
+    /// `sync`, `time`, `store`, `emergency`, `gateway`, `cia402`, `cia406`.
     pub caught_by: &'static str,
     pub(crate) apply: fn(&mut Behaviour),
 }
@@ -114,10 +115,12 @@ pub struct Behaviour {
     pub canopen: canopen::Behaviour,
     /// Its Modbus side.
     pub modbus: modbus::Behaviour,
-    /// Whether the speed that an encoder shows on CAN carries its sign.
-    pub speed_sign_on_can: modbus::SpeedSign,
+    /// What an encoder measures, and how it shows that on CAN.
+    pub encoder: EncoderBehaviour,
     /// A gateway between the two.
     pub gateway: GatewayBehaviour,
+    /// A drive behind it.
+    pub drive: drive::Behaviour,
 }
 
 /// The device has no fault or variant of this name.

@@ -8,7 +8,7 @@ pub mod canopen;
 mod canopen_complete;
 pub mod catalogue;
 mod conditions;
-mod drive;
+pub mod drive;
 mod huacheng_ssts1;
 pub mod inverter;
 mod kinco_servo;
@@ -22,7 +22,8 @@ pub use catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
 };
 
-pub use teco_jn5_cm_can::Behaviour as GatewayBehaviour;
+pub use liaomiao_encoder::{Behaviour as EncoderBehaviour, PresetEffect};
+pub use teco_jn5_cm_can::{Behaviour as GatewayBehaviour, Lost, RunState, TargetSign};
 
 #[cfg(doc)]
 use fieldproof_link::Participant;

@@ -6,8 +6,9 @@ use std::time::Duration;
 use super::port::Port;
 use super::ports::{GivesUp, Heard, Ports};
 use crate::{
-    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, Origin, Outbox, Participant,
-    PortIndex, PortProperties, Sent, Stimulus, StimulusError, StimulusKind, Transmission,
+    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Origin, Outbox,
+    Participant, PortIndex, PortProperties, Sent, Stimulus, StimulusError, StimulusKind,
+    Transmission,
 };
 
 /// How often a stimulus that takes its time is asked whether it is done.
@@ -230,6 +231,30 @@ impl Lane for RealLane {
                 .map_err(|error| StimulusError::Failed(error.to_string()))?;
         }
         Ok(())
+    }
+
+    fn stimulate_companion(
+        &mut self,
+        port: PortIndex,
+        stimulus: &Stimulus,
+    ) -> Result<(), NotOffered> {
+        let now = self.ports.clock.now();
+        for index in 0..self.companions.len() {
+            let Some(companion) = self.companions[index].as_mut() else {
+                continue;
+            };
+            let done = companion.port == port.0
+                && companion
+                    .participant
+                    .stimulate(now, stimulus, &mut self.outbox)
+                    .is_ok();
+            if done {
+                // What fails to leave is missed by whoever waits for it.
+                let _ = self.send_for(index);
+                return Ok(());
+            }
+        }
+        Err(NotOffered)
     }
 
     fn attach(&mut self, port: PortIndex, companion: Box<dyn Participant>) -> CompanionIndex {

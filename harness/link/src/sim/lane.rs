@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::world::{Hung, World};
 use crate::{
-    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, Participant, PortIndex,
+    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Participant, PortIndex,
     PortProperties, Sent, Stimulus, StimulusError, StimulusKind, Transmission,
 };
 
@@ -133,6 +133,22 @@ impl Lane for SimLane {
                 device.stimulate(now, stimulus, out)
             })
             .map_err(|_| StimulusError::NotOffered)
+    }
+
+    fn stimulate_companion(
+        &mut self,
+        port: PortIndex,
+        stimulus: &Stimulus,
+    ) -> Result<(), NotOffered> {
+        for member in self.world.companions_on(port.0) {
+            let done = self.world.call(member, |companion, now, out| {
+                companion.stimulate(now, stimulus, out)
+            });
+            if done.is_ok() {
+                return Ok(());
+            }
+        }
+        Err(NotOffered)
     }
 
     fn attach(&mut self, port: PortIndex, companion: Box<dyn Participant>) -> CompanionIndex {

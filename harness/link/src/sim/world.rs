@@ -148,6 +148,19 @@ impl World {
         }
     }
 
+    /// The places of the companions that sit on `bus`.
+    pub(super) fn companions_on(&self, bus: usize) -> Vec<usize> {
+        let sits = |member: &Member| {
+            let mut seats = member.seats.iter().flatten();
+            member.source != Source::Bus && seats.any(|seat| seat.bus == bus)
+        };
+        let places = self.members.iter().enumerate();
+        places
+            .filter(|(_, member)| sits(member))
+            .map(|(place, _)| place)
+            .collect()
+    }
+
     pub(super) fn medium(&self, bus: usize) -> Option<&Medium> {
         self.buses.get(bus).map(|bus| &bus.medium)
     }

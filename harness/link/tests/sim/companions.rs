@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use fieldproof_link::sim::Builder;
 use fieldproof_link::{
-    Arrival, Character, CompanionIndex, Instant, Lane, Line, Origin, PortIndex, Reception,
-    Transmission,
+    Arrival, Character, CompanionIndex, Instant, Lane, Line, NotOffered, Origin, PortIndex,
+    Reception, Stimulus, Transmission,
 };
 
 use crate::actor::{Actor, CAN_500K, Do, MODBUS_9600, ms, received, transmission, us};
@@ -166,4 +166,28 @@ fn one_behind_a_serial_port_answers_the_device() {
     assert_eq!(lane.receive(ms(100)), Ok(Some(answer)));
     assert_eq!(lane.receive(ms(100)), Ok(None));
     assert_eq!(*heard.lock().unwrap(), [(answer.at, 1, answer.what)]);
+}
+
+#[test]
+fn a_companion_is_stimulated_by_the_port_that_it_is_on() {
+    let mut builder = Builder::new();
+    let can = builder.can_bus("can", 500_000);
+    let other = builder.can_bus("other", 500_000);
+    builder.device(Actor::new(CAN_500K).boxed(), &[can]);
+    let mut lane = builder.build();
+    let off = Stimulus::Power { on: false };
+    assert_eq!(lane.stimulate_companion(can, &off), Err(NotOffered));
+    lane.attach(can, sync_producer().boxed());
+    assert_eq!(lane.stimulate_companion(other, &off), Err(NotOffered));
+    assert_eq!(lane.stimulate_companion(can, &off), Ok(()));
+    assert_eq!(
+        lane.receive(ms(15)),
+        Ok(None),
+        "it is off, and sends nothing"
+    );
+    let unknown = Stimulus::Condition {
+        name: "hot".to_owned(),
+        active: true,
+    };
+    assert_eq!(lane.stimulate_companion(can, &unknown), Err(NotOffered));
 }

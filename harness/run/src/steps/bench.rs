@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use fieldproof_link::{Line, Stimulus, StimulusError};
+use fieldproof_link::{Line, PortIndex, Stimulus, StimulusError};
 use fieldproof_record::{Event, StimulusEvent};
-use fieldproof_suite::model::{PowerAction, Stimulate};
+use fieldproof_suite::model::{CompanionStimulus, PowerAction, Stimulate};
 
 use crate::stop::Stop;
 use crate::tester::Tester;
@@ -48,7 +48,51 @@ impl Tester<'_> {
                 }
                 self.set(name, *to)
             }
+            Stimulate::Companion { port, stimulus } => self.stimulate_companion(port, stimulus),
         }
+    }
+
+    /// What the tester plays himself: put back after the case by taking its power away and giving it again.
+    fn stimulate_companion(
+        &mut self,
+        role: &str,
+        stimulus: &CompanionStimulus,
+    ) -> Result<(), Stop> {
+        let port = self.port(role)?;
+        self.undo.push(Undo::Companion(port));
+        match stimulus {
+            CompanionStimulus::Power(PowerAction::Off) => self.power_companion(port, false),
+            CompanionStimulus::Power(PowerAction::On) => self.power_companion(port, true),
+            CompanionStimulus::Power(PowerAction::Cycle) => self.renew_companion(port),
+            CompanionStimulus::ProcessValue { name, to } => self.give_companion(
+                port,
+                &Stimulus::ProcessValue {
+                    name: name.clone(),
+                    value: *to,
+                },
+            ),
+        }
+    }
+
+    pub(crate) fn renew_companion(&mut self, port: PortIndex) -> Result<(), Stop> {
+        self.power_companion(port, false)?;
+        self.power_companion(port, true)
+    }
+
+    fn power_companion(&mut self, port: PortIndex, on: bool) -> Result<(), Stop> {
+        self.give_companion(port, &Stimulus::Power { on })
+    }
+
+    fn give_companion(&mut self, port: PortIndex, stimulus: &Stimulus) -> Result<(), Stop> {
+        let at_ns = self.session.now().as_nanos();
+        let role = self.session.port_name(port).to_owned();
+        let what = format!("{} of what the tester plays on {role}", describe(stimulus));
+        self.session.mark_sent();
+        let given = self.session.lane().stimulate_companion(port, stimulus);
+        given.map_err(|_| Stop::Bench(format!("nothing has: {what}")))?;
+        self.session
+            .emit(Event::Stimulus(Box::new(StimulusEvent { at_ns, what })));
+        Ok(())
     }
 
     pub(crate) fn power(&mut self, on: bool) -> Result<(), Stop> {

@@ -54,6 +54,19 @@ fn a_wrong_value_fails_and_shows_the_frames() {
 }
 
 #[test]
+fn any_value_but_one_passes() {
+    let case = READ.replace("expect: 5", "expect: {other-than: 5}");
+    let played = Setup::default().play(answering(&["581#4300200006000000"]), &case);
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    let played = Setup::default().play(answering(&["581#4300200005000000"]), &case);
+    assert_eq!(
+        played.verdict(),
+        (Verdict::Fail, "2000h:00 holds another value")
+    );
+    assert_eq!(played.case().failures[0].expected, "any but 5");
+}
+
+#[test]
 fn an_answer_that_comes_twice_fails() {
     let twice = answering(&["581#4300200005000000", "581#4300200005000000"]);
     let played = Setup::default().play(twice, READ);

@@ -7,8 +7,9 @@ use std::time::Duration;
 
 use fieldproof_can::Frame;
 use fieldproof_link::{
-    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, Outbox, Participant, PortIndex,
-    PortProperties, Reception, Sent, Stimulus, StimulusError, StimulusKind, Transmission, sim,
+    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Outbox, Participant,
+    PortIndex, PortProperties, Reception, Sent, Stimulus, StimulusError, StimulusKind,
+    Transmission, sim,
 };
 use fieldproof_record::{CaseFinished, Event, Verdict};
 use fieldproof_run::{Bench, LaneJob, LaneOutcome, play_lane};
@@ -180,6 +181,14 @@ impl<L: Lane> Lane for Uncertain<L> {
 
     fn stimulate(&mut self, stimulus: &Stimulus) -> Result<(), StimulusError> {
         self.lane.stimulate(stimulus)
+    }
+
+    fn stimulate_companion(
+        &mut self,
+        port: PortIndex,
+        stimulus: &Stimulus,
+    ) -> Result<(), NotOffered> {
+        self.lane.stimulate_companion(port, stimulus)
     }
 
     fn attach(&mut self, port: PortIndex, companion: Box<dyn Participant>) -> CompanionIndex {

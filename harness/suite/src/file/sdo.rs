@@ -41,6 +41,10 @@ pub(crate) struct SdoReadFile {
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
     within: Option<Duration>,
+    /// It is read again and again until it is what is expected, for so long at the most.
+    #[serde(default, deserialize_with = "optional_time")]
+    #[schemars(with = "Option<Time>")]
+    settles: Option<Duration>,
     /// Keeps the value under this name for later steps.
     #[serde(default)]
     save: Option<String>,
@@ -72,7 +76,7 @@ impl TwoForms for ReadExpectFile {
     }
 }
 
-/// What a read must give, beside one value: one of several, a range, what is claimed, or a refusal.
+/// What a read must give, beside one value: one of several, another one, a range, what is claimed, or a refusal.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(rename = "ReadExpectation")]
@@ -80,6 +84,9 @@ pub(crate) struct ReadExpectMap {
     /// One of these.
     #[serde(default)]
     one_of: Option<Vec<Located<RawValue>>>,
+    /// Any but this one.
+    #[serde(default)]
+    other_than: Option<Located<RawValue>>,
     /// The lowest that passes.
     #[serde(default)]
     from: Option<Located<RawValue>>,
@@ -130,6 +137,13 @@ impl ReadExpectFile {
             }
             return Err(not_one_expectation());
         }
+        if let Some(value) = map.other_than {
+            let alone = map.one_of.is_none() && map.from.is_none() && map.to.is_none();
+            if alone && map.abort.is_none() && map.strict.is_none() {
+                return located(&value).map(ReadExpectation::OtherThan);
+            }
+            return Err(not_one_expectation());
+        }
         match (map.one_of, map.from, map.to, map.abort, map.strict) {
             (Some(values), None, None, None, None) if !values.is_empty() => values
                 .iter()
@@ -159,7 +173,7 @@ fn not_one_expectation() -> Wrong {
     Wrong::new(
         code::KEYS_TOGETHER,
         "this is not one expectation",
-        "expected `one-of`, or `from` and `to`, or `claimed`, or `abort` with `strict` if need be",
+        "expected `one-of`, or `other-than`, or `from` and `to`, or `claimed`, or `abort` with `strict` if need be",
     )
 }
 
@@ -236,6 +250,7 @@ impl TryFrom<SdoReadFile> for SdoRead {
             value_type: file.value_type,
             expect,
             within: file.within,
+            settles: file.settles,
             save: file.save,
             observe: file.observe,
             check: file.check,

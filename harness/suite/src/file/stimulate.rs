@@ -4,14 +4,18 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::code;
-use crate::model::{PowerAction, Stimulate};
+use crate::model::{CompanionStimulus, PowerAction, Stimulate};
 use crate::problem::Wrong;
 
-/// A stimulus: `{power: off}`, `{process-value: .., to: ..}`, `{condition: .., active: ..}` or `{setting: .., to: ..}`.
+/// A stimulus: `{power: off}`, `{process-value: .., to: ..}`, `{condition: .., active: ..}` or `{setting: .., to: ..}`;
+/// with `companion` the first two of them, done to what the tester plays on that port.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(rename = "Stimulate")]
 pub(crate) struct StimulateFile {
+    /// The port whose companion this is done to, and not the device: the inverter behind a gateway.
+    #[serde(default)]
+    companion: Option<String>,
     /// Power off and on.
     #[serde(default)]
     power: Option<PowerAction>,
@@ -37,6 +41,7 @@ impl TryFrom<StimulateFile> for Stimulate {
 
     fn try_from(file: StimulateFile) -> Result<Stimulate, Wrong> {
         let StimulateFile {
+            companion,
             power,
             process_value,
             condition,
@@ -44,6 +49,22 @@ impl TryFrom<StimulateFile> for Stimulate {
             to,
             active,
         } = file;
+        if let Some(port) = companion {
+            let stimulus = match (power, process_value, condition, setting, to, active) {
+                (Some(action), None, None, None, None, None) => CompanionStimulus::Power(action),
+                (None, Some(name), None, None, Some(to), None) => {
+                    CompanionStimulus::ProcessValue { name, to }
+                }
+                _ => {
+                    return Err(Wrong::new(
+                        code::KEYS_TOGETHER,
+                        "this is not one stimulus of a companion",
+                        "expected `power`, or `process-value` with `to`",
+                    ));
+                }
+            };
+            return Ok(Stimulate::Companion { port, stimulus });
+        }
         match (power, process_value, condition, setting, to, active) {
             (Some(action), None, None, None, None, None) => Ok(Stimulate::Power(action)),
             (None, Some(name), None, None, Some(to), None) => {

@@ -32,6 +32,27 @@ pub enum Stimulate {
         /// The value.
         to: i64,
     },
+    /// `{companion: inverter, power: off}`; undone after the case.
+    Companion {
+        /// The port that the tester plays it on.
+        port: String,
+        /// What is done to it.
+        stimulus: CompanionStimulus,
+    },
+}
+
+/// What is done to something that the tester plays himself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CompanionStimulus {
+    /// Its power goes off or on. With the power off it takes no part; after it, it is as new.
+    Power(PowerAction),
+    /// `{companion: inverter, process-value: "register 2520", to: 5}`
+    ProcessValue {
+        /// What.
+        name: String,
+        /// The raw value.
+        to: i64,
+    },
 }
 
 /// What is done to the power.

@@ -39,6 +39,8 @@ pub struct Behaviour {
     pub unknown_nmt_command_stops: bool,
     /// The state byte of heartbeat and guarding.
     pub state_codes: StateCodes,
+    /// A value beyond the limits of its object is refused.
+    pub limits_checked: bool,
     /// A request with an unknown command specifier is refused, and not ignored.
     pub unknown_command_refused: bool,
     /// A number travels in an expedited upload with its most significant byte first.
@@ -107,6 +109,8 @@ pub struct Behaviour {
     pub reserved_types_taken: bool,
     /// With transmission type 252 a remote frame fetches what the last SYNC found, not what there is.
     pub remote_sample_kept: bool,
+    /// A TPDO carries what there is when it leaves, and not what there was when it was started.
+    pub tpdo_refreshed: bool,
     /// A TPDO waits for the SYNC with its start value.
     pub sync_start_value_kept: bool,
     /// A SYNC that is produced has the counter that 1019h asks for.
@@ -209,6 +213,7 @@ impl Default for Behaviour {
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,
             unknown_nmt_command_stops: false,
+            limits_checked: true,
             unknown_command_refused: true,
             upload_big_endian: false,
             surplus_syncs: 0,
@@ -245,6 +250,7 @@ impl Default for Behaviour {
             lss_fastscan_unconfigured_only: true,
             reserved_types_taken: false,
             remote_sample_kept: true,
+            tpdo_refreshed: true,
             sync_start_value_kept: true,
             sync_counter_sent: true,
             inhibit_time_kept: true,

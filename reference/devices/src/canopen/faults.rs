@@ -57,6 +57,14 @@ pub(crate) const LSS_REVISION_ANSWERS_5B: Fault = Fault {
     apply: |behaviour| behaviour.canopen.lss_revision_specifier = 0x5B,
 };
 
+pub(crate) const TPDO_NOT_REFRESHED: Fault = Fault {
+    name: "tpdo-not-refreshed",
+    breaks: "CiA 301: PDO, the data of the application objects that are mapped",
+    words: "sends in every TPDO what its objects held when the node was started",
+    caught_by: "pdo",
+    apply: |behaviour| behaviour.canopen.tpdo_refreshed = false,
+};
+
 pub(crate) const TOGGLE_NOT_ALTERNATED: Fault = Fault {
     name: "toggle-not-alternated",
     breaks: "CiA 301: SDO upload segment, toggle bit",

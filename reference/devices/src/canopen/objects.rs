@@ -120,12 +120,13 @@ impl Object {
         Ok(())
     }
 
-    /// Whether `value` may be written as far as length and limits go.
-    pub(crate) fn takes(&self, value: &[u8]) -> Result<(), Abort> {
+    /// Whether `value` may be written as far as its length goes and, if they are checked, the limits.
+    pub(crate) fn takes(&self, value: &[u8], limits_checked: bool) -> Result<(), Abort> {
         match self.size {
             Some(size) if value.len() > size => Err(Abort::TOO_LONG),
             Some(size) if value.len() < size => Err(Abort::TOO_SHORT),
-            _ => self.limits(value),
+            _ if limits_checked => self.limits(value),
+            _ => Ok(()),
         }
     }
 }

@@ -261,7 +261,7 @@ impl Slave {
         };
         let latched =
             tpdo.communication.kind == SAMPLED_BY_SYNC && self.behaviour.remote_sample_kept;
-        let payload = if latched {
+        let payload = if latched || !self.behaviour.tpdo_refreshed {
             tpdo.sampled
         } else {
             tpdo.payload(&self.objects)

@@ -30,9 +30,10 @@ impl Slave {
         if !object.writable {
             return Err(Abort::READ_ONLY);
         }
-        object.takes(value)?;
+        let limits_checked = self.behaviour.limits_checked;
+        object.takes(value, limits_checked)?;
         if let Some(twin) = self.twin(address).and_then(|twin| self.objects.get(twin)) {
-            twin.takes(value)?;
+            twin.takes(value, limits_checked)?;
         }
         if !self.permitted(address, value)? {
             return Ok(true);

@@ -16,6 +16,7 @@ pub use registers::{InverterRegisters, LINE, STATION};
 #[derive(Debug, Clone)]
 pub struct Inverter {
     slave: ModbusSlave<InverterRegisters>,
+    powered: bool,
 }
 
 impl Inverter {
@@ -28,6 +29,7 @@ impl Inverter {
     pub fn behaving(behaviour: Behaviour, seed: u64) -> Inverter {
         Inverter {
             slave: ModbusSlave::new(InverterRegisters::default(), behaviour, seed),
+            powered: true,
         }
     }
 
@@ -35,6 +37,7 @@ impl Inverter {
     pub fn over(self, framing: Option<Framing>) -> Inverter {
         Inverter {
             slave: self.slave.over(framing),
+            ..self
         }
     }
 
@@ -46,26 +49,35 @@ impl Inverter {
 
 impl Participant for Inverter {
     fn line(&self, _: usize) -> Line {
-        self.slave.line()
+        if self.powered {
+            self.slave.line()
+        } else {
+            Line::Off
+        }
     }
 
     fn receive(&mut self, now: Instant, _: usize, reception: Reception, _: &mut Outbox) {
-        if let Reception::Character(character) = reception {
+        if let Reception::Character(character) = reception
+            && self.powered
+        {
             self.slave.receive(now, character);
         }
     }
 
     fn wake_at(&self) -> Option<Instant> {
-        self.slave.wake_at()
+        self.slave.wake_at().filter(|_| self.powered)
     }
 
     fn wake(&mut self, now: Instant, out: &mut Outbox) {
-        if let Some(characters) = self.slave.wake(now) {
+        if self.powered
+            && let Some(characters) = self.slave.wake(now)
+        {
             out.send(0, Transmission::Characters(characters));
         }
     }
 
-    /// Process values are registers, the number in hexadecimal: `register 2520`.
+    /// Process values are registers, the number in hexadecimal: `register 2520`. With the power off it takes no part;
+    /// after power-on its registers are those of a new one.
     fn stimulate(
         &mut self,
         _: Instant,
@@ -73,6 +85,12 @@ impl Participant for Inverter {
         _: &mut Outbox,
     ) -> Result<(), NotOffered> {
         match stimulus {
+            Stimulus::Power { on } => {
+                self.powered = *on;
+                *self.slave.registers_mut() = InverterRegisters::default();
+                self.slave.restart();
+                Ok(())
+            }
             Stimulus::ProcessValue { name, value } => {
                 let registers = self.slave.registers_mut();
                 registers.set_process_value(name, *value)
@@ -82,7 +100,7 @@ impl Participant for Inverter {
     }
 
     fn offers(&self) -> Vec<StimulusKind> {
-        vec![StimulusKind::ProcessValue]
+        vec![StimulusKind::Power, StimulusKind::ProcessValue]
     }
 
     /// Every register: `register 2501`, the value in decimal.

@@ -92,7 +92,10 @@ fn plays_as_a_participant() {
     assert_eq!(state["register 2520"], "261");
     assert_eq!(state["register 2524"], "500");
     assert_eq!(state.len(), 48);
-    let wrong = Stimulus::Power { on: false };
+    let wrong = Stimulus::Setting {
+        name: "node".to_owned(),
+        value: 1,
+    };
     let refused = inverter.stimulate(now, &wrong, &mut out);
     assert_eq!(refused, Err(NotOffered));
 }
@@ -160,4 +163,32 @@ fn inverter_is_what_its_description_claims() {
             assert_ne!(allowed, Some(Ok(())), "{register:04X}");
         }
     }
+}
+
+#[test]
+fn without_power_it_is_silent_and_afterwards_as_new() {
+    let mut inverter = Inverter::new(1);
+    let mut out = Outbox::default();
+    let mut give = |inverter: &mut Inverter, stimulus| {
+        inverter
+            .stimulate(Instant::START, &stimulus, &mut out)
+            .unwrap();
+    };
+    let value = Stimulus::ProcessValue {
+        name: "register 2505".to_owned(),
+        value: 7,
+    };
+    give(&mut inverter, value);
+    give(&mut inverter, Stimulus::Power { on: false });
+    assert_eq!(inverter.line(0), Line::Off);
+    let mut heard = Outbox::default();
+    for byte in b"\x01\x03\x25\x20\x00\x01\x8E\xCC" {
+        let character = Reception::Character(Character::new(*byte));
+        inverter.receive(Instant::START, 0, character, &mut heard);
+    }
+    assert_eq!(inverter.wake_at(), None);
+    give(&mut inverter, Stimulus::Power { on: true });
+    assert_eq!(inverter.line(0), Line::Serial(LINE));
+    assert_eq!(inverter.wake_at(), None, "what it did not hear is gone");
+    assert_eq!(inverter.registers(), &InverterRegisters::default());
 }

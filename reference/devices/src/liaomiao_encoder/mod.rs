@@ -1,6 +1,7 @@
 //! A Liaomiao multi-turn encoder: port 0 on CAN (250 kbit/s, node 32), port 1 on a serial line (9600 8N1, address 32).
 //! Both show the same shaft.
 
+mod behaviour;
 mod model;
 mod registers;
 mod shaft;
@@ -19,9 +20,10 @@ use crate::canopen::{
     faults, nmt_faults,
 };
 use crate::catalogue::{
-    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
+    DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
-use crate::modbus::{self, ModbusSlave, SpeedSign};
+use crate::modbus::{self, ModbusSlave};
+pub use behaviour::{Behaviour, PresetEffect};
 use model::EncoderModel;
 use registers::EncoderRegisters;
 use shaft::Shaft;
@@ -34,6 +36,8 @@ const BIT_RATES: &[u32] = &[
 ];
 /// The event timer of TPDO1 is the cyclic timer.
 const TWINS: &[(Address, Address)] = &[(Address::new(0x6200, 0), Address::new(0x1800, 5))];
+/// Beside 2003h and 6000h, which the model holds.
+const SAVED_ON_WRITE: &[u16] = &[0x2002, 0x2004, 0x2005, 0x6003, 0x6200];
 const CAN: usize = 0;
 const SERIAL: usize = 1;
 
@@ -44,6 +48,7 @@ const OWN_FAULTS: &[Fault] = &[
     faults::SDO_ANSWERED_IN_STOPPED,
     faults::GUARDING_TOGGLE_STUCK,
     faults::EVENT_TIMER_UNIT,
+    faults::TPDO_NOT_REFRESHED,
     faults::LSS_STORE_FORGETS,
     faults::LSS_SERIAL_IGNORED,
     faults::LSS_SELECTION_NOT_CONFIRMED,
@@ -53,22 +58,24 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_REVISION_ANSWERS_5B,
     faults::NODE_ID_ACTIVE_BEFORE_RESET,
     IDENTITY_OF_THE_TEMPLATE,
-    SPEED_SIGN_LOST,
     modbus::faults::SPEED_SIGN_LOST,
     modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
     modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
 ];
+const ENCODER_FAULTS: &[Fault] = behaviour::FAULTS;
 const FAULTS: [Fault;
     faults::COMMON.len()
         + nmt_faults::COMMON.len()
         + error_control_faults::COMMON.len()
         + modbus::faults::COMMON.len()
-        + OWN_FAULTS.len()] = all_of(&[
+        + OWN_FAULTS.len()
+        + ENCODER_FAULTS.len()] = all_of(&[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     modbus::faults::COMMON,
     OWN_FAULTS,
+    ENCODER_FAULTS,
 ]);
 
 /// What can be built.
@@ -92,19 +99,12 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             words: "sends TPDO1 on entering Operational, as newer editions of CiA 406 have it, then every period",
             apply: |behaviour| behaviour.canopen.tpdo_on_start = true,
         },
+        behaviour::POSITION_JUMPS_WITH_DIRECTION,
         canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
     ],
     build,
-};
-
-const SPEED_SIGN_LOST: Fault = Fault {
-    name: "speed-sign-lost-on-can",
-    breaks: "Liaomiao encoder manual, object 2000h: the speed is signed",
-    words: "shows the magnitude of the speed in 2000h and in both TPDOs",
-    caught_by: "pdo",
-    apply: |behaviour| behaviour.speed_sign_on_can = SpeedSign::Lost,
 };
 
 const IDENTITY_OF_THE_TEMPLATE: Fault = Fault {
@@ -116,13 +116,13 @@ const IDENTITY_OF_THE_TEMPLATE: Fault = Fault {
 };
 
 /// What the manual documents.
-fn documented() -> Behaviour {
-    Behaviour {
+fn documented() -> crate::Behaviour {
+    crate::Behaviour {
         canopen: canopen::Behaviour {
             tpdo_on_start: false,
             ..canopen::Behaviour::default()
         },
-        ..Behaviour::default()
+        ..crate::Behaviour::default()
     }
 }
 
@@ -133,7 +133,7 @@ static DICTIONARY: LazyLock<Dictionary> = LazyLock::new(|| {
     .dictionary
 });
 
-fn profile() -> Profile {
+fn profile(behaviour: &Behaviour) -> Profile {
     Profile {
         dictionary: &DICTIONARY,
         boot_time: Duration::from_millis(12),
@@ -145,12 +145,20 @@ fn profile() -> Profile {
         lss: Some(LssAbilities {
             bit_rates: BIT_RATES,
         }),
-        saved_on_write: &[0x2002, 0x2004, 0x2005, 0x6003, 0x6200],
+        saved_on_write: if behaviour.settings_saved {
+            SAVED_ON_WRITE
+        } else {
+            &[]
+        },
         node_object: Some(Address::new(0x3000, 0)),
         bit_rate_object: Some(Address::new(0x3001, 0)),
         complete: false,
         clock_object: None,
-        twins: TWINS,
+        twins: if behaviour.cyclic_timer_is_event_timer {
+            TWINS
+        } else {
+            &[]
+        },
     }
 }
 
@@ -162,17 +170,17 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
         seed: settings.seed,
     };
     let mut registers = EncoderRegisters::new(settings.address.unwrap_or(registers::ADDRESS));
-    let speed_sign = behaviour.speed_sign_on_can;
     let mut shaft = Shaft {
         model: &mut registers.model,
-        speed_sign,
+        behaviour: &behaviour.encoder,
     };
-    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut shaft);
+    let profile = profile(&behaviour.encoder);
+    let slave = Slave::new(profile, behaviour.canopen, factory, &mut shaft);
     Ok(Box::new(LiaomiaoEncoder {
         slave,
         modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed).over(settings.framing),
         powered: true,
-        speed_sign,
+        behaviour: behaviour.encoder,
     }))
 }
 
@@ -182,7 +190,7 @@ struct LiaomiaoEncoder {
     slave: Slave,
     modbus: ModbusSlave<EncoderRegisters>,
     powered: bool,
-    speed_sign: SpeedSign,
+    behaviour: Behaviour,
 }
 
 impl LiaomiaoEncoder {
@@ -190,7 +198,7 @@ impl LiaomiaoEncoder {
     fn can(&mut self) -> (&mut Slave, Shaft<'_>) {
         let shaft = Shaft {
             model: &mut self.modbus.registers_mut().model,
-            speed_sign: self.speed_sign,
+            behaviour: &self.behaviour,
         };
         (&mut self.slave, shaft)
     }
@@ -207,6 +215,16 @@ impl LiaomiaoEncoder {
         self.modbus.restart();
         let (slave, mut shaft) = self.can();
         slave.power(now, on, &mut shaft);
+    }
+
+    /// The shaft turns by `counts` of 1/65536 turn, clockwise where they are positive.
+    fn turn(&mut self, counts: i64) -> Result<(), NotOffered> {
+        let counts = i32::try_from(counts).map_err(|_| NotOffered)?;
+        if self.powered || self.behaviour.turns_unpowered_counted {
+            let model = &mut self.modbus.registers_mut().model;
+            model.turn(counts, &self.behaviour);
+        }
+        Ok(())
     }
 
     fn switch(&mut self, now: Instant, name: &str, value: i64) -> Result<(), NotOffered> {
@@ -266,7 +284,7 @@ impl Participant for LiaomiaoEncoder {
         }
     }
 
-    /// Process values: `position` in counts, `speed` in 1/10000 rpm, `temperature` in 1/100 °C, a measured register
+    /// Process values: `turn`, by which the shaft turns on, in 1/65536 turn, clockwise where positive; `position` in counts, `speed` in 1/10000 rpm, `temperature` in 1/100 °C, a measured register
     /// (`register 0004`), `6004:00` and `2000:00`.
     fn stimulate(
         &mut self,
@@ -282,8 +300,12 @@ impl Participant for LiaomiaoEncoder {
                     "2000:00" => "speed",
                     other => other,
                 };
-                let registers = self.modbus.registers_mut();
-                registers.set_process_value(name, *value)?;
+                if name == "turn" {
+                    self.turn(*value)?;
+                } else {
+                    let registers = self.modbus.registers_mut();
+                    registers.set_process_value(name, *value)?;
+                }
                 self.show();
             }
             Stimulus::Setting { name, value } => self.switch(now, name, *value)?,

@@ -1,5 +1,7 @@
 //! What the encoder measures, and what its two ports share of how it shows that.
 
+use super::{Behaviour, PresetEffect};
+
 /// The shaft as the encoder sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct EncoderModel {
@@ -13,6 +15,10 @@ pub(crate) struct EncoderModel {
     pub(crate) single_turn_bits: u8,
     /// Whether turning counter-clockwise counts up.
     pub(crate) counter_clockwise: bool,
+    /// The preset value that was written last.
+    pub(crate) preset: u32,
+    /// By how much presets have moved the position.
+    pub(crate) preset_by: u32,
 }
 
 impl Default for EncoderModel {
@@ -24,6 +30,8 @@ impl Default for EncoderModel {
             temperature_hundredths: 2_500,
             single_turn_bits: 16,
             counter_clockwise: false,
+            preset: 0,
+            preset_by: 0,
         }
     }
 }
@@ -42,6 +50,59 @@ impl EncoderModel {
     pub(crate) fn set_shown_speed(&mut self, speed: i32) {
         self.speed_ten_thousandths_rpm = speed;
         self.speed_ten_thousandths_rpm = self.shown_speed();
+    }
+
+    /// The shaft turns by `counts` of 1/65536 turn, clockwise where they are positive.
+    pub(crate) fn turn(&mut self, counts: i32, behaviour: &Behaviour) {
+        let counts = counts >> self.coarseness();
+        let reversed = self.counter_clockwise && behaviour.direction_turns_count;
+        let counts = if reversed {
+            counts.saturating_neg()
+        } else {
+            counts
+        };
+        let turned = if behaviour.position_wraps {
+            self.position.wrapping_add_signed(counts)
+        } else {
+            self.position.saturating_add_signed(counts)
+        };
+        self.position = if behaviour.turns_counted {
+            turned
+        } else {
+            let angle = u32::MAX >> (32 - u32::from(self.split()));
+            self.position & !angle | turned & angle
+        };
+    }
+
+    /// A preset value is written.
+    pub(crate) fn set_preset(&mut self, value: u32, effect: PresetEffect) {
+        let position = match effect {
+            PresetEffect::SetsOnce if self.preset == value => self.position,
+            PresetEffect::Sets | PresetEffect::SetsOnce => value,
+            PresetEffect::None => self.position,
+            PresetEffect::Adds => self.position.wrapping_add(value),
+            PresetEffect::SetsMirrored if self.counter_clockwise => value.wrapping_neg(),
+            PresetEffect::SetsMirrored => value,
+        };
+        let by = position.wrapping_sub(self.position);
+        self.preset = value;
+        self.preset_by = self.preset_by.wrapping_add(by);
+        self.position = position;
+    }
+
+    /// The position is as it was without any preset.
+    pub(crate) fn forget_preset(&mut self) {
+        self.position = self.position.wrapping_sub(self.preset_by);
+        self.preset_by = 0;
+    }
+
+    /// Sets whether turning counter-clockwise counts up.
+    pub(crate) fn set_direction(&mut self, counter_clockwise: bool, behaviour: &Behaviour) {
+        let changes = self.counter_clockwise != counter_clockwise;
+        if changes && behaviour.position_jumps_with_direction {
+            self.position = self.position.wrapping_neg();
+        }
+        self.counter_clockwise = counter_clockwise;
     }
 
     /// The angle within the turn in 1/65536 of it.
@@ -111,6 +172,37 @@ mod tests {
     }
 
     #[test]
+    fn a_turn_counts_by_split_and_direction_and_goes_round() {
+        let right = Behaviour::default();
+        let mut model = EncoderModel::default();
+        model.turn(-65_536, &right);
+        assert_eq!(model.position, 0xFFFF_0000);
+        model.turn(3 * 65_536 + 1, &right);
+        assert_eq!(model.position, 0x0002_0001);
+        model.set_single_turn_bits(12);
+        model.turn(65_536, &right);
+        assert_eq!(model.position, 0x0000_3000);
+        model.set_direction(true, &right);
+        assert_eq!(model.position, 0x0000_3000);
+        model.turn(32_768, &right);
+        assert_eq!(model.position, 0x0000_2800);
+    }
+
+    #[test]
+    fn a_preset_is_remembered_as_what_it_moved() {
+        let mut model = EncoderModel {
+            position: 70,
+            ..EncoderModel::default()
+        };
+        model.set_preset(500, PresetEffect::Sets);
+        model.turn(5, &Behaviour::default());
+        model.set_preset(100, PresetEffect::Sets);
+        assert_eq!((model.position, model.preset_by), (100, 25));
+        model.forget_preset();
+        assert_eq!((model.position, model.preset_by), (75, 0));
+    }
+
+    #[test]
     fn every_public_field_value_is_survived() {
         for single_turn_bits in [0, 7, 17, 255] {
             let mut model = EncoderModel {
@@ -119,6 +211,12 @@ mod tests {
                 ..EncoderModel::default()
             };
             model.set_angle(model.angle());
+            let behaviour = Behaviour {
+                turns_counted: false,
+                ..Behaviour::default()
+            };
+            model.turn(i32::MIN, &behaviour);
+            model.turn(i32::MAX, &Behaviour::default());
             model.set_single_turn_bits(0);
             assert_eq!(model.single_turn_bits, 8);
         }

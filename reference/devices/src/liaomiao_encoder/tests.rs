@@ -1,6 +1,6 @@
 use super::KIND;
 use crate::Settings;
-use crate::script::{Script, conforms, departs};
+use crate::script::{Script, assert_same, conforms, departs, departures};
 
 const PDO: &str = "
     wait 20 ms
@@ -575,5 +575,205 @@ fn fault_in_confirming_a_selection() {
         < 7E4#5A3C060000000000
         ",
         &[("< 7E4#4400000000000000", "")],
+    );
+}
+
+const PRESET: &str = "
+    wait 20 ms
+    < 720#00
+    > 620#23036000F4010000
+    < 5A0#6003600000000000
+    > 620#4004600000000000
+    < 5A0#43046000F4010000
+    set turn = 256
+    > 620#4004600000000000
+    < 5A0#43046000F4020000
+    > 620#2B00600001000000
+    < 5A0#6000600000000000
+    > 620#4000650000000000
+    < 5A0#4B00650001000000
+    > 620#4004600000000000
+    < 5A0#43046000F4020000
+    set turn = 256
+    > 620#4004600000000000
+    < 5A0#43046000F4010000
+    > 620#2303600064000000
+    < 5A0#6003600000000000
+    > 620#4004600000000000
+    < 5A0#4304600064000000
+    > 000#8120
+    wait 20 ms
+    < 720#00
+    > 620#4004600000000000
+    < 5A0#4304600064000000
+    > 620#4003600000000000
+    < 5A0#4303600064000000
+";
+
+#[test]
+fn preset_sets_the_position_and_direction_turns_the_count() {
+    conforms(&KIND, PRESET);
+}
+
+#[test]
+fn variant_mirrors_the_position_with_the_direction() {
+    let settings = Settings {
+        variant: Some("position-jumps-with-direction".to_owned()),
+        ..Settings::default()
+    };
+    let told = Script::new(&KIND, &settings).play(PRESET);
+    let mirrored = [
+        ("< 5A0#43046000F4020000", "< 5A0#43046000F4020000"),
+        ("< 5A0#43046000F4020000", "< 5A0#430460000CFDFFFF"),
+        ("< 5A0#43046000F4010000", "< 5A0#430460000CFCFFFF"),
+    ];
+    assert_same(&told, &departures(PRESET, &mirrored));
+}
+
+#[test]
+fn faults_in_direction_and_preset() {
+    let (first, turned) = ("< 5A0#43046000F4010000", "< 5A0#43046000F4020000");
+    let (same, back) = (turned, first);
+    let last = "< 5A0#4304600064000000";
+    for (fault, changes) in [
+        (
+            "direction-of-count-fixed",
+            &[(first, first), (back, "< 5A0#43046000F4030000")][..],
+        ),
+        (
+            "preset-without-effect",
+            &[
+                (first, "< 5A0#4304600000000000"),
+                (turned, "< 5A0#4304600000010000"),
+                (same, "< 5A0#4304600000010000"),
+                (back, "< 5A0#4304600000000000"),
+                (last, "< 5A0#4304600000000000"),
+                (last, "< 5A0#4304600000000000"),
+            ],
+        ),
+        (
+            "preset-added",
+            &[
+                (last, "< 5A0#4304600058020000"),
+                (last, "< 5A0#4304600058020000"),
+            ],
+        ),
+        (
+            "preset-mirrored",
+            &[
+                (last, "< 5A0#430460009CFFFFFF"),
+                (last, "< 5A0#430460009CFFFFFF"),
+            ],
+        ),
+        (
+            "preset-lost-at-reset",
+            &[(last, last), (last, "< 5A0#4304600000000000")],
+        ),
+        (
+            "operating-status-frozen",
+            &[("< 5A0#4B00650001000000", "< 5A0#4B00650000000000")],
+        ),
+        (
+            "settings-forgotten",
+            &[("< 5A0#4303600064000000", "< 5A0#4303600000000000")],
+        ),
+    ] {
+        departs(&KIND, fault, PRESET, changes);
+    }
+}
+
+const TURNS: &str = "
+    wait 20 ms
+    < 720#00
+    > 620#2303600000FFFFFF
+    < 5A0#6003600000000000
+    set turn = 65792
+    > 620#4004600000000000
+    < 5A0#4304600000000100
+    > 620#2B0320000C000000
+    < 5A0#6003200000000000
+    > 620#2303600000000000
+    < 5A0#6003600000000000
+    set turn = 65536
+    > 620#4004600000000000
+    < 5A0#4304600000100000
+    power off
+    set turn = 32768
+    wait 5 ms
+    power on
+    wait 20 ms
+    < 720#00
+    > 620#4004600000000000
+    < 5A0#4304600000180000
+    > 620#4003200000000000
+    < 5A0#4B0320000C000000
+    set speed = 60000000
+    > 620#4000200000000000
+    < 5A0#4300200000879303
+    > 620#2B03200011000000
+    < 5A0#8003200031000906
+";
+
+#[test]
+fn turns_are_counted_with_and_without_power() {
+    conforms(&KIND, TURNS);
+}
+
+#[test]
+fn faults_in_counting() {
+    let (round, turn, unpowered) = (
+        "< 5A0#4304600000000100",
+        "< 5A0#4304600000100000",
+        "< 5A0#4304600000180000",
+    );
+    for (fault, changes) in [
+        (
+            "turns-not-counted",
+            &[
+                (round, "< 5A0#430460000000FFFF"),
+                (turn, "< 5A0#4304600000000000"),
+                (unpowered, "< 5A0#4304600000080000"),
+            ][..],
+        ),
+        (
+            "position-stops-at-the-end",
+            &[(round, "< 5A0#43046000FFFFFFFF")],
+        ),
+        ("turns-unpowered-missed", &[(unpowered, turn)]),
+        (
+            "resolution-without-effect",
+            &[
+                (turn, "< 5A0#4304600000000100"),
+                (unpowered, "< 5A0#4304600000800100"),
+                ("< 5A0#4B0320000C000000", "< 5A0#4B03200010000000"),
+            ],
+        ),
+        (
+            "speed-clipped",
+            &[("< 5A0#4300200000879303", "< 5A0#4300200018FCF301")],
+        ),
+        (
+            "limits-not-checked",
+            &[("< 5A0#8003200031000906", "< 5A0#6003200000000000")],
+        ),
+    ] {
+        departs(&KIND, fault, TURNS, changes);
+    }
+}
+
+#[test]
+fn fault_in_cyclic_timer() {
+    departs(
+        &KIND,
+        "cyclic-timer-without-effect",
+        "
+        wait 20 ms
+        < 720#00
+        > 620#2B00620032000000
+        < 5A0#6000620000000000
+        > 620#4000180500000000
+        < 5A0#4B00180532000000
+        ",
+        &[("< 5A0#4B00180532000000", "< 5A0#4B00180564000000")],
     );
 }

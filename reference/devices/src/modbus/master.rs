@@ -36,6 +36,18 @@ pub enum Failure {
     Exception(u8),
 }
 
+/// What a master takes for an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Answers {
+    /// What comes from the station that was asked, with the right CRC.
+    #[default]
+    Right,
+    /// What comes from it, whatever the CRC is.
+    CrcUnchecked,
+    /// What comes, whoever sent it.
+    StationUnchecked,
+}
+
 #[derive(Debug, Clone, Copy)]
 enum Request {
     WriteSingle {
@@ -63,6 +75,7 @@ struct InFlight {
 pub struct ModbusMaster {
     line: SerialSettings,
     timeout: Duration,
+    answers: Answers,
     framer: Framer,
     queue: VecDeque<(RequestId, Request)>,
     in_flight: Option<InFlight>,
@@ -78,6 +91,7 @@ impl ModbusMaster {
         ModbusMaster {
             line,
             timeout,
+            answers: Answers::Right,
             framer: Framer::new(line),
             queue: VecDeque::new(),
             in_flight: None,
@@ -85,6 +99,11 @@ impl ModbusMaster {
             next_id: 0,
             free_from: Instant::START,
         }
+    }
+
+    /// The same that takes `answers` for an answer.
+    pub fn taking(self, answers: Answers) -> ModbusMaster {
+        ModbusMaster { answers, ..self }
     }
 
     /// How its line is set.
@@ -203,8 +222,11 @@ impl ModbusMaster {
             return;
         };
         let result = match crc::split(&received.bytes) {
-            Some((body, true)) if !received.flawed => {
-                if body.first() != Some(&request.station()) {
+            Some((body, right))
+                if !received.flawed && (right || self.answers == Answers::CrcUnchecked) =>
+            {
+                let other = body.first() != Some(&request.station());
+                if other && self.answers != Answers::StationUnchecked {
                     return;
                 }
                 request.reply(body)

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use fieldproof_link::Instant;
 
-use super::Behaviour;
+use super::{Behaviour, Lost, RunState, TargetSign};
 use crate::canopen::{Abort, Address, Answer, Application, Objects, Slave};
 use crate::inverter::{LINE, STATION};
 use crate::modbus::{Failure, ModbusMaster, Reply, RequestId};
@@ -34,6 +34,7 @@ const STATE_REGISTER: u16 = 0x2520;
 /// 2520h to 2524h
 const STATUS_REGISTERS: u16 = 5;
 const FREQUENCY_DEMAND_REGISTER: u16 = 0x2523;
+const OUTPUT_FREQUENCY_REGISTER: u16 = 0x2524;
 
 const RUN: u16 = 1 << 0;
 const REVERSE: u16 = 1 << 1;
@@ -70,6 +71,10 @@ pub(super) struct Gateway {
     /// What 6040h and 6042h were when the inverter last took them.
     controlword: u16,
     target: u16,
+    /// What is written now goes on to the inverter.
+    passes_on: bool,
+    /// The inverter has once not answered, and is not asked again.
+    gone: bool,
     /// Values set beside the bus: they stay until the inverter is commanded.
     pub(super) held: Vec<Address>,
     pub(super) poll_at: Option<Instant>,
@@ -78,16 +83,23 @@ pub(super) struct Gateway {
 impl Gateway {
     pub(super) fn new(behaviour: Behaviour) -> Gateway {
         Gateway {
-            master: ModbusMaster::new(LINE, TIMEOUT),
+            master: ModbusMaster::new(LINE, TIMEOUT).taking(behaviour.answers),
             behaviour,
             tasks: VecDeque::new(),
             current: None,
             operation: 0,
             controlword: 0,
             target: 0,
+            passes_on: true,
+            gone: false,
             held: Vec::new(),
             poll_at: None,
         }
+    }
+
+    /// A frame is coming, from an SDO client or another.
+    pub(super) fn hears(&mut self, from_client: bool) {
+        self.passes_on = from_client || self.behaviour.pdo_passed_on;
     }
 
     pub(super) fn operation(&self) -> u16 {
@@ -96,7 +108,7 @@ impl Gateway {
 
     /// Whether the PDOs are to be kept fresh.
     pub(super) fn keep_polling(&mut self, now: Instant, operational: bool) {
-        if !operational {
+        if !operational || !self.behaviour.polls {
             self.poll_at = None;
         } else if self.poll_at.is_none() {
             self.poll_at = Some(now);
@@ -159,25 +171,46 @@ impl Gateway {
         match address {
             CONTROLWORD => {
                 let run = value & 1;
-                let asked = value & 1 << 7 != 0 && self.behaviour.fault_reset_passed_on;
+                let says = value & 1 << 7 != 0 || !self.behaviour.fault_reset_on_bit_7_only;
+                let asked = says && self.behaviour.fault_reset_passed_on;
                 let reset = if asked { FAULT_RESET } else { 0 };
                 let others = self.operation & !(RUN | FAULT_RESET);
                 (OPERATION_REGISTER, others | run | reset)
             }
             TARGET_VELOCITY => {
-                let magnitude = value & !SIGN;
+                let magnitude = match self.behaviour.target_sign {
+                    TargetSign::Bit15 => value & !SIGN,
+                    TargetSign::TwosComplement => value.cast_signed().unsigned_abs(),
+                };
                 let counts = magnitude.saturating_mul(self.behaviour.counts_per_target);
-                (FREQUENCY_REGISTER, counts)
+                (FREQUENCY_REGISTER, counts & self.behaviour.frequency_mask)
             }
-            _ => (member(address), value),
+            _ => {
+                let register = member(address) + self.behaviour.first_written;
+                (register, self.in_order(value))
+            }
         }
     }
 
     fn with_direction(&self, reverse: bool) -> u16 {
-        if reverse {
+        let operation = if reverse {
             self.operation | REVERSE
         } else {
             self.operation & !REVERSE
+        };
+        if operation == self.operation || self.behaviour.direction_keeps_run {
+            operation
+        } else {
+            operation & !RUN
+        }
+    }
+
+    /// A value of 2025h as a register has it, and the other way round.
+    fn in_order(&self, value: u16) -> u16 {
+        if self.behaviour.bytes_in_order {
+            value
+        } else {
+            value.swap_bytes()
         }
     }
 
@@ -198,9 +231,10 @@ impl Gateway {
         result: Result<Reply, Failure>,
         slave: &mut Slave,
     ) {
+        self.gone |= result == Err(Failure::NoAnswer) && !self.behaviour.asks_again;
         match (task, result) {
             (Task::Read(address), Ok(Reply::Registers(registers))) => {
-                let value = registers.first().copied().unwrap_or_default();
+                let value = self.in_order(registers.first().copied().unwrap_or_default());
                 slave.finish_upload(now, address, Ok(&value.to_le_bytes()));
             }
             (Task::Status(awaited), Ok(Reply::Registers(registers))) => {
@@ -211,8 +245,7 @@ impl Gateway {
                 }
             }
             (Task::Read(address) | Task::Status(Some(address)), result) => {
-                let abort = result.map_or_else(abort, |_| Abort::HARDWARE);
-                slave.finish_upload(now, address, Err(abort));
+                self.fail_upload(now, address, result.err(), slave);
             }
             (Task::Status(None), _) => {}
             (Task::Write { address, value }, Ok(_)) => {
@@ -232,6 +265,28 @@ impl Gateway {
                     Ok(())
                 };
                 slave.finish_download(now, address, outcome);
+            }
+        }
+    }
+
+    /// The inverter has not given what an upload asks for.
+    fn fail_upload(
+        &self,
+        now: Instant,
+        address: Address,
+        failure: Option<Failure>,
+        slave: &mut Slave,
+    ) {
+        let silent = failure == Some(Failure::NoAnswer);
+        match (failure, self.behaviour.lost) {
+            (Some(Failure::Exception(code)), _) if !self.behaviour.exceptions_told => {
+                slave.finish_upload(now, address, Ok(&[code, 0]));
+            }
+            (_, Lost::Zero) if silent => slave.finish_upload(now, address, Ok(&[0, 0])),
+            (_, Lost::Hangs) if silent => {}
+            _ => {
+                let abort = failure.map_or(Abort::HARDWARE, abort);
+                slave.finish_upload(now, address, Err(abort));
             }
         }
     }
@@ -274,15 +329,33 @@ impl Gateway {
         };
         let state = at(STATE_REGISTER);
         let sign = if state & REVERSE == 0 { 0 } else { SIGN };
+        let runs = match self.behaviour.run_state {
+            RunState::OfInverter => state & RUN != 0,
+            RunState::OfCommand => self.operation & RUN != 0,
+            RunState::Frozen => false,
+        };
+        let [running, resting] = self.behaviour.statuswords;
+        let demand = self.demand(at(FREQUENCY_DEMAND_REGISTER), at(OUTPUT_FREQUENCY_REGISTER));
         for (address, value) in [
             (ERROR_CODE, at(STATE_REGISTER + 1)),
-            (STATUSWORD, state & RUN),
-            (VELOCITY_DEMAND, (at(FREQUENCY_DEMAND_REGISTER) / 2) | sign),
+            (STATUSWORD, if runs { running } else { resting }),
+            (VELOCITY_DEMAND, demand | sign),
         ] {
             if !self.held.contains(&address) {
                 objects.set_number(address, i64::from(value));
             }
         }
+    }
+
+    /// 6043h, without its direction.
+    fn demand(&self, before_ramp: u16, behind_ramp: u16) -> u16 {
+        let frequency = if self.behaviour.demand_behind_ramp {
+            behind_ramp
+        } else {
+            before_ramp
+        };
+        let half = u16::from(self.behaviour.demand_rounded_up);
+        frequency.saturating_add(half) / self.behaviour.counts_per_demand.max(1)
     }
 }
 
@@ -308,6 +381,9 @@ impl Application for Gateway {
             }
             _ => return Answer::Now,
         };
+        if self.gone {
+            return Answer::Refused(Abort::HARDWARE);
+        }
         self.tasks.push_back(task);
         Answer::Later
     }
@@ -315,6 +391,12 @@ impl Application for Gateway {
     fn writing(&mut self, address: Address, value: &[u8]) -> Answer {
         let group_25 = address.index() == GROUP_25;
         if !group_25 && address != CONTROLWORD && address != TARGET_VELOCITY {
+            return Answer::Now;
+        }
+        if self.gone {
+            return Answer::Refused(Abort::HARDWARE);
+        }
+        if !self.passes_on {
             return Answer::Now;
         }
         let value = <[u8; 2]>::try_from(value).map_or(0, u16::from_le_bytes);
@@ -333,6 +415,7 @@ impl Application for Gateway {
         self.operation = 0;
         self.controlword = 0;
         self.target = 0;
+        self.gone = false;
         self.held.clear();
         self.poll_at = None;
     }

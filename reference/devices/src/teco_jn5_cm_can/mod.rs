@@ -18,7 +18,7 @@ use crate::canopen::{
 };
 use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of};
 use crate::inverter;
-pub use behaviour::Behaviour;
+pub use behaviour::{Behaviour, Lost, RunState, TargetSign};
 use gateway::Gateway;
 
 const NODE: u8 = 1;
@@ -26,6 +26,7 @@ const NODE: u8 = 1;
 const HIGHEST_NODE: i64 = 63;
 const BIT_RATE: u32 = 500_000;
 const BIT_RATES: &[u32] = &[500_000, 250_000, 125_000, 50_000];
+const SDO_REQUESTS: std::ops::RangeInclusive<u32> = 0x601..=0x67F;
 const CAN: usize = 0;
 const INVERTER: usize = 1;
 
@@ -38,8 +39,25 @@ const OWN_FAULTS: &[Fault] = &[
     behaviour::DIRECTION_LOST,
     behaviour::FAULT_RESET_LOST,
     behaviour::FREQUENCY_HALVED,
+    behaviour::FREQUENCY_IN_15_BITS,
     behaviour::CONFIRMS_EARLY,
     behaviour::REFUSAL_HIDDEN,
+    behaviour::TARGET_AS_INTEGER16,
+    behaviour::DIRECTION_STOPS,
+    behaviour::FAULT_RESET_BY_ANY_WRITE,
+    behaviour::PDO_NOT_PASSED_ON,
+    behaviour::NOT_POLLED,
+    behaviour::RUN_STATE_OF_COMMAND,
+    behaviour::RUN_STATE_FROZEN,
+    behaviour::DEMAND_NOT_HALVED,
+    behaviour::WRITES_ONE_FURTHER,
+    behaviour::BYTE_ORDER,
+    behaviour::LOST_INVERTER_READS_ZERO,
+    behaviour::LOST_INVERTER_HANGS,
+    behaviour::LOST_FOR_GOOD,
+    behaviour::CRC_UNCHECKED,
+    behaviour::STATION_UNCHECKED,
+    behaviour::EXCEPTION_AS_VALUE,
 ];
 const FAULTS: [Fault;
     faults::COMMON.len()
@@ -68,6 +86,9 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
     ],
     faults: &FAULTS,
     variants: &[
+        behaviour::STATUSWORD_OF_CIA402,
+        behaviour::DEMAND_BEHIND_RAMP,
+        behaviour::DEMAND_ROUNDED_UP,
         canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
@@ -165,6 +186,8 @@ impl Participant for TecoJn5CmCan {
     fn receive(&mut self, now: Instant, port: usize, reception: Reception, _: &mut Outbox) {
         match (port, reception) {
             (CAN, Reception::Frame(frame)) => {
+                let from_client = SDO_REQUESTS.contains(&frame.id().raw());
+                self.gateway.hears(from_client);
                 self.slave.receive(now, &frame, &mut self.gateway);
                 self.go_on(now);
             }

@@ -309,3 +309,242 @@ fn fault_in_refusal() {
         &[("< 581#8042600030000906", "< 581#6042600000000000")],
     );
 }
+
+/// The lines of what a device in front of an inverter makes of `script` that begin with `mark`.
+fn lines_of(fault: Option<&str>, script: &str, mark: &str) -> Vec<String> {
+    let told = play(fault, &format!("wait 20 ms\n{script}"));
+    let lines = told.lines().filter(|line| line.starts_with(mark));
+    lines
+        .filter(|line| *line != "< 701#00")
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn faults_in_what_the_inverter_is_told() {
+    let run_and_turn = "
+        > 601#2B40600001000000
+        wait 100 ms
+        > 601#2B426000F4810000
+        wait 100 ms
+    ";
+    for (fault, script, right, wrong) in [
+        (
+            "gateway-target-as-integer16",
+            "> 601#2B4260009CFF0000",
+            "<< 01 06 25 02 FF 38 63 24",
+            "<< 01 06 25 02 00 C8 22 90",
+        ),
+        (
+            "gateway-frequency-in-15-bits",
+            "> 601#2B426000204E0000",
+            "<< 01 06 25 02 9C 40 4B F6",
+            "<< 01 06 25 02 1C 40 2A 36",
+        ),
+        (
+            "gateway-direction-stops",
+            run_and_turn,
+            "<< 01 06 25 01 00 03 93 07",
+            "<< 01 06 25 01 00 02 52 C7",
+        ),
+        (
+            "gateway-fault-reset-by-any-write",
+            "> 601#2B40600000000000",
+            "<< 01 06 25 01 00 00 D3 06",
+            "<< 01 06 25 01 00 08 D2 C0",
+        ),
+        (
+            "gateway-writes-one-further",
+            "> 601#2B25200664000000",
+            "<< 01 06 25 05 00 64 93 2C",
+            "<< 01 06 25 06 00 64 63 2C",
+        ),
+        (
+            "gateway-byte-order",
+            "> 601#2B25200664000000",
+            "<< 01 06 25 05 00 64 93 2C",
+            "<< 01 06 25 05 64 00 B8 07",
+        ),
+    ] {
+        let last = |fault| lines_of(fault, script, "<<").pop();
+        assert_eq!(last(None).as_deref(), Some(right), "{fault}");
+        assert_eq!(last(Some(fault)).as_deref(), Some(wrong), "{fault}");
+    }
+}
+
+#[test]
+fn faults_in_what_pdos_ask_and_tell() {
+    let rpdo = "> 000#0101\n wait 90 ms\n > 201#01005224\n wait 90 ms";
+    assert_eq!(lines_of(None, rpdo, "<< 01 06").len(), 2);
+    let lost = lines_of(Some("gateway-pdo-not-passed-on"), rpdo, "<< 01 06");
+    assert_eq!(lost.len(), 0);
+    let operational = "> 000#0101\n wait 250 ms";
+    assert_eq!(lines_of(None, operational, "<< 01 03").len(), 3);
+    let lost = lines_of(Some("gateway-not-polled"), operational, "<< 01 03");
+    assert_eq!(lost.len(), 0);
+}
+
+#[test]
+fn faults_in_what_the_inverter_tells() {
+    // Told to run, with a fault that keeps it from that.
+    let faulty = "
+        > 601#2B25200204000000
+        wait 100 ms
+        > 601#2B25200200000000
+        wait 100 ms
+        > 601#2B40600001000000
+        wait 100 ms
+        > 601#4041600000000000
+        wait 100 ms
+    ";
+    let running = "
+        > 601#2B40600001000000
+        wait 100 ms
+        > 601#4041600000000000
+        wait 100 ms
+    ";
+    let demand = "> 601#4043600000000000\n wait 100 ms";
+    let read = "> 601#4025202400000000\n wait 100 ms";
+    for (fault, script, right, wrong) in [
+        (
+            "gateway-run-state-of-command",
+            faulty,
+            "< 581#4B41600000000000",
+            "< 581#4B41600001000000",
+        ),
+        (
+            "gateway-run-state-frozen",
+            running,
+            "< 581#4B41600001000000",
+            "< 581#4B41600000000000",
+        ),
+        (
+            "gateway-demand-not-halved",
+            demand,
+            "< 581#4B436000FA000000",
+            "< 581#4B436000F4010000",
+        ),
+        (
+            "gateway-byte-order",
+            read,
+            "< 581#4B252024F4010000",
+            "< 581#4B25202401F40000",
+        ),
+    ] {
+        let last = |fault| lines_of(fault, script, "< ").pop();
+        assert_eq!(last(None).as_deref(), Some(right), "{fault}");
+        assert_eq!(last(Some(fault)).as_deref(), Some(wrong), "{fault}");
+    }
+}
+
+/// Nobody answers, or somebody does by hand.
+const BY_HAND: &str = "
+    wait 20 ms
+    < 701#00
+    > 601#4025202400000000
+    << 01 03 25 23 00 01 7E CC
+    wait 10 ms
+    >> 01 03 02 12 34 B5 34
+    < 581#8025202400000606
+    > 601#4025202400000000
+    << 01 03 25 23 00 01 7E CC
+    wait 10 ms
+    >> 02 03 02 12 34 F1 33
+    < 581#8025202400000606
+    > 601#4025202400000000
+    << 01 03 25 23 00 01 7E CC
+    wait 10 ms
+    >> 01 83 04 40 F3
+    < 581#8025202420000008
+    > 601#4025202400000000
+    << 01 03 25 23 00 01 7E CC
+    wait 10 ms
+    >> 01 03 02 01 F4 B8 53
+    < 581#4B252024F4010000
+";
+
+#[test]
+fn faults_in_what_is_taken_for_an_answer() {
+    let malformed = "< 581#8025202400000606";
+    let silent = malformed;
+    for (fault, changes) in [
+        (
+            "gateway-crc-unchecked",
+            &[(malformed, "< 581#4B25202434120000")][..],
+        ),
+        (
+            "gateway-station-unchecked",
+            &[(malformed, malformed), (silent, "< 581#4B25202434120000")],
+        ),
+        (
+            "gateway-lost-inverter-reads-zero",
+            &[(malformed, malformed), (silent, "< 581#4B25202400000000")],
+        ),
+        (
+            "gateway-exception-as-value",
+            &[("< 581#8025202420000008", "< 581#4B25202404000000")],
+        ),
+    ] {
+        crate::script::departs(&KIND, fault, BY_HAND, changes);
+    }
+}
+
+#[test]
+fn faults_when_the_inverter_is_lost() {
+    let script = "
+        wait 20 ms
+        < 701#00
+        > 601#4025202400000000
+        << 01 03 25 23 00 01 7E CC
+        wait 120 ms
+        < 581#8025202400000606
+        > 601#4025202200000000
+        << 01 03 25 21 00 01 DF 0C
+        wait 120 ms
+        < 581#8025202200000606
+    ";
+    let (first, second) = ("< 581#8025202400000606", "< 581#8025202200000606");
+    let asked = "<< 01 03 25 21 00 01 DF 0C";
+    crate::script::departs(
+        &KIND,
+        "gateway-lost-for-good",
+        script,
+        &[(asked, second), (second, "")],
+    );
+    crate::script::departs(
+        &KIND,
+        "gateway-lost-inverter-hangs",
+        script,
+        &[(first, ""), (second, "")],
+    );
+}
+
+#[test]
+fn variants_in_what_the_inverter_tells() {
+    for (variant, script, answer) in [
+        (
+            "statusword-of-cia402",
+            "> 601#4041600000000000",
+            "< 581#4B41600031020000",
+        ),
+        (
+            "demand-behind-ramp",
+            "> 601#4043600000000000",
+            "< 581#4B43600000000000",
+        ),
+        (
+            "demand-rounded-up",
+            "> 601#2B25200301000000\n wait 100 ms\n > 601#4043600000000000",
+            "< 581#4B43600001000000",
+        ),
+    ] {
+        let settings = Settings {
+            variant: Some(variant.to_owned()),
+            ..Settings::default()
+        };
+        let inverter = Box::new(Inverter::new(0));
+        let mut device = Script::new(&KIND, &settings).with(inverter);
+        let told = device.play(&format!("wait 20 ms\n{script}\n wait 100 ms"));
+        assert!(told.contains(answer), "{variant}: {told}");
+    }
+}
