@@ -111,7 +111,7 @@ fn frames_that_are_no_command() {
         &KIND,
         "nmt-command-of-three-bytes-resets",
         NO_COMMANDS,
-        &[(answer, "")],
+        &[(answer, "< 70A#00")],
     );
     departs(
         &KIND,
@@ -255,8 +255,8 @@ fn time_in_stopped() {
         > 60A#400C210000000000
         < 58A#410C210006000000
         > 60A#6000000000000000
-        < 58A#0300000000000001
+        < 58A#0300000000000000
     ";
-    let taken = ("< 58A#0300000000000001", "< 58A#0311223304050601");
+    let taken = ("< 58A#0300000000000000", "< 58A#0311223304050600");
     departs(&KIND, "time-taken-in-stopped", script, &[taken]);
 }
