@@ -8,11 +8,7 @@ use std::{env, fs, io};
 const FOLDERS: [(&str, &str, &[&str]); 3] = [
     ("suites", "suites", &["yaml"]),
     ("catalogues", "catalogues", &["yaml"]),
-    (
-        "fixtures/devices",
-        "devices",
-        &["yaml", "eds", "objects", "registers"],
-    ),
+    ("fixtures/devices", "devices", &["yaml", "eds", "objects"]),
 ];
 
 fn main() -> io::Result<()> {

@@ -40,7 +40,8 @@ def description(device: str) -> dict[str, str]:
 
 def default_map(device: str) -> Path:
     """The register map beside that description."""
-    return next((FIXTURES / device).glob("*.registers"))
+    folder = "teco-inverter" if device == "teco-jn5-cm-can" else device
+    return FIXTURES / folder / "registers.yaml"
 
 
 def arguments() -> argparse.Namespace:

@@ -14,7 +14,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_run::{fill, fill_some, suites_for};
+use fieldproof_run::{Known, fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
@@ -37,6 +37,8 @@ pub struct Device {
     pub description: DeviceDescription,
     /// Its object dictionary, if it has a CANopen side.
     pub dictionary: Option<Dictionary>,
+    /// Its register map, if it has a Modbus side of which that is known.
+    pub registers: Option<RegisterMap>,
     /// The reference device of that name; without one, the device cannot be simulated.
     pub kind: Option<&'static DeviceKind>,
     /// Where a bench has it.
@@ -77,11 +79,10 @@ impl Device {
         self.simulated().map_or(&[], |kind| kind.variants)
     }
 
-    /// The device with at most `most` rows of every table that its dictionary fills.
+    /// The device with at most `most` rows of every table that its dictionary or register map fills.
     pub(crate) fn with_some_of_each(&self, suites: &[Suite], most: u16) -> Device {
-        let canopen = self.description.canopen.as_ref();
-        let node = canopen.map_or(1, |canopen| canopen.node);
-        let some = |suite| fill_some(suite, self.dictionary.as_ref(), node, most);
+        let known = self.known();
+        let some = |suite| fill_some(suite, &self.description, known, most);
         Device {
             suites: suites_for(suites, &self.description).map(some).collect(),
             ..self.clone()
@@ -89,11 +90,17 @@ impl Device {
     }
 
     fn fill(&mut self, suites: &[Suite]) {
-        let canopen = self.description.canopen.as_ref();
-        let node = canopen.map_or(1, |canopen| canopen.node);
+        let known = self.known();
         self.suites = suites_for(suites, &self.description)
-            .map(|suite| fill(suite, self.dictionary.as_ref(), node))
+            .map(|suite| fill(suite, &self.description, known))
             .collect();
+    }
+
+    fn known(&self) -> Known<'_> {
+        Known {
+            dictionary: self.dictionary.as_ref(),
+            registers: self.registers.as_ref(),
+        }
     }
 
     fn simulated(&self) -> Option<&'static DeviceKind> {
@@ -204,6 +211,11 @@ fn source_file((path, text): (&str, &str)) -> SourceFile {
     }
 }
 
+/// Register maps lie beside the descriptions that name them.
+fn is_register_map(file: &SourceFile) -> bool {
+    file.text.lines().any(|line| line.starts_with("registers:"))
+}
+
 /// In so many lines the head of a suite is looked for.
 const HEAD_LINES: u32 = 100;
 
@@ -289,6 +301,7 @@ impl Reader {
                 self.benches.push((file, Folder::OnDisk(folder)));
             }
             Ok(file) if is_catalogue(&file) => self.catalogue_files.push(file),
+            Ok(file) if is_register_map(&file) => drop(self.registers(&file)),
             Ok(file) => self.files.push(file),
         }
     }
@@ -406,13 +419,12 @@ impl Reader {
             .modbus
             .as_ref()
             .and_then(|modbus| modbus.registers.as_ref());
-        if let Some(map) = map {
-            self.register_map(folder, map);
-        }
+        let registers = map.and_then(|map| self.register_map(folder, map));
         self.described.insert(description.device.clone());
         Some(Device {
             description,
             dictionary,
+            registers,
             kind,
             place: None,
             suites: Vec::new(),
@@ -484,19 +496,20 @@ impl Reader {
         }
     }
 
-    fn register_map(&mut self, folder: &Folder, name: &str) {
+    fn register_map(&mut self, folder: &Folder, name: &str) -> Option<RegisterMap> {
         match folder.file(name) {
-            Ok(file) => {
-                if let Err(error) = RegisterMap::parse(&file.text) {
-                    self.problems.push(problems::of_table_error(
-                        &error,
-                        &file.path,
-                        &Arc::from(file.text.as_str()),
-                    ));
-                }
+            Ok(file) => self.registers(&file),
+            Err(problem) => {
+                self.problems.push(*problem);
+                None
             }
-            Err(problem) => self.problems.push(*problem),
         }
+    }
+
+    fn registers(&mut self, file: &SourceFile) -> Option<RegisterMap> {
+        fieldproof_suite::load_registers(file)
+            .map_err(|diagnostics| self.diagnostics(&diagnostics, std::slice::from_ref(file)))
+            .ok()
     }
 
     /// A suite may be for one device only, and that must be one there is.

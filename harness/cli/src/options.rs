@@ -420,6 +420,8 @@ pub enum SchemaKind {
     Suite,
     /// A device description.
     Device,
+    /// A register map.
+    Registers,
     /// A bench.
     Bench,
     /// A catalogue of what should be tested.

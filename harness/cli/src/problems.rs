@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use fieldproof_dictionary::eds::{self, Finding, manual};
-use fieldproof_dictionary::registers::TableError;
+use fieldproof_dictionary::eds::manual::{self, TableError};
+use fieldproof_dictionary::eds::{self, Finding};
 use fieldproof_report::{Also, Elsewhere, Problem, Severity, SourceText, Span};
 use fieldproof_suite::{Diagnostic, Position};
 

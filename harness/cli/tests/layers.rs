@@ -12,7 +12,10 @@ const MAY_USE: [(&str, &[&str]); 11] = [
     ("fieldproof-record", &[]),
     ("fieldproof-wire", &["fieldproof-can"]),
     ("fieldproof-dictionary", &[]),
-    ("fieldproof-suite", &["fieldproof-can"]),
+    (
+        "fieldproof-suite",
+        &["fieldproof-can", "fieldproof-dictionary"],
+    ),
     ("fieldproof-link", &["fieldproof-can"]),
     (
         "fieldproof-run",

@@ -1,4 +1,4 @@
-//! Integers as EDS files and register tables write them.
+//! Integers as EDS files write them.
 
 /// An integer as it was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,103 +1,260 @@
-//! Modbus register maps, from a table a person can read.
+//! Modbus register maps: what a device claims to have in its four tables.
 //!
-//! One register a line, columns apart by `|`, comments after `#`:
-//!
-//! ```text
-//! # address | access | type | range         | default | unit | persists | name
-//! 0x0004    | r      | i16  | -15000..15000 | -       | rpm  | -        | speed
-//! 325       | rw     | i16  | -6000..6000   | 0       | rpm  | no       | internal speed command 1
-//! ```
-//!
-//! | column | says |
-//! | --- | --- |
-//! | address | of the (first) register in the PDU, from 0; decimal or `0x` |
-//! | access | `r`, `w` or `rw` |
-//! | type | `u16`, `i16`, `u32`, `i32`; a 32-bit value takes two registers |
-//! | range | lowest and highest value, both allowed; `-` for all that the type holds |
-//! | default | after a reset to defaults; `-` if not known |
-//! | unit | of one count; `-` if it has none |
-//! | persists | whether a value written survives power-off: `yes`, `no`, `-` if not known |
-//! | name | of the register |
+//! The file that says so is read elsewhere; here is what it means.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::Access;
-use crate::integer::Integer;
 
-/// The registers a device claims to have, in address order.
+/// The registers, coils and discrete inputs that a device claims to have.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RegisterMap {
+    tables: BTreeMap<Table, RegisterTable>,
+}
+
+/// One of the four tables of the Modbus data model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Table {
+    /// Bits that can be written: functions 01h, 05h, 0Fh.
+    Coils,
+    /// Bits that can only be read: function 02h.
+    DiscreteInputs,
+    /// Registers that can be written: functions 03h, 06h, 10h, 16h, 17h.
+    Holding,
+    /// Registers that can only be read: function 04h.
+    Input,
+}
+
+impl Table {
+    /// Every table.
+    pub const ALL: [Table; 4] = [
+        Table::Coils,
+        Table::DiscreteInputs,
+        Table::Holding,
+        Table::Input,
+    ];
+
+    /// Its name in a file: `holding`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Table::Coils => "coils",
+            Table::DiscreteInputs => "discrete-inputs",
+            Table::Holding => "holding",
+            Table::Input => "input",
+        }
+    }
+
+    /// Whether it holds bits.
+    pub const fn holds_bits(self) -> bool {
+        matches!(self, Table::Coils | Table::DiscreteInputs)
+    }
+
+    /// Whether the data model lets it be written.
+    pub const fn can_be_written(self) -> bool {
+        matches!(self, Table::Coils | Table::Holding)
+    }
+}
+
+/// One table of a map.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RegisterTable {
+    /// What is known of the addresses that nothing is said of.
+    pub holes: Holes,
     registers: BTreeMap<u16, Register>,
 }
 
-/// One value of a register map.
+/// What a device does with an address that its map does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Holes {
+    /// Reading it gives a value.
+    Answered,
+    /// It is refused.
+    Refused,
+    /// The documents do not say.
+    #[default]
+    Unknown,
+}
+
+/// One value of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Register {
-    /// The address of its (first) register in the PDU.
+    /// The address of its (first) register in the PDU, from 0.
     pub address: u16,
-    /// How many registers it takes: 1 or 2.
-    pub words: u16,
     /// What it is called.
     pub name: String,
+    /// How its bits are to be read.
+    pub kind: Kind,
     /// What may be done with it: read only, write only, or read and write.
     pub access: Access,
-    /// Whether it is in two's complement.
-    pub signed: bool,
-    /// The lowest value.
-    pub low: i64,
-    /// The highest value.
-    pub high: i64,
+    /// The lowest value, if it is not that of its type.
+    pub low: Option<i64>,
+    /// The highest value, if it is not that of its type.
+    pub high: Option<i64>,
     /// The value after a reset to defaults, if it is known.
     pub default: Option<i64>,
-    /// The unit of one count; empty if it has none.
+    /// The unit of the scaled value; empty if it has none.
     pub unit: String,
+    /// What a count is multiplied with to give the unit.
+    pub scale: Option<Scale>,
+    /// Which word of a 32-bit value comes first, if it is known.
+    pub word_order: Option<WordOrder>,
     /// Whether a value written survives power-off, if it is known.
     pub persists: Option<bool>,
-    /// The line of the table, from 1.
-    pub line: usize,
+    /// What writing it does; `None` if that is not known.
+    pub effects: Option<BTreeSet<WriteEffect>>,
+    /// What single values mean.
+    pub codes: BTreeMap<i64, String>,
+    /// What single bits mean, from bit 0.
+    pub bits: BTreeMap<u8, String>,
+    /// The line of the file, from 1.
+    pub line: u32,
 }
 
-/// A line of a table that cannot be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {text}")]
-pub struct TableError {
-    /// The line, from 1.
-    pub line: usize,
-    /// What is wrong.
-    pub text: String,
+/// How the bits of a value are to be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// One bit, of a table of bits.
+    Bit,
+    /// 16 bits.
+    U16,
+    /// 16 bits in two's complement.
+    I16,
+    /// 32 bits in two registers.
+    U32,
+    /// 32 bits in two's complement, in two registers.
+    I32,
+    /// An IEEE 754 number in two registers; its limits, default and codes are bit patterns.
+    F32,
 }
 
-impl RegisterMap {
-    /// Reads a register table.
-    ///
-    /// # Errors
-    /// The first line that is no register, or whose register overlaps one of an earlier line.
-    pub fn parse(text: &str) -> Result<RegisterMap, TableError> {
-        let mut map = RegisterMap::default();
-        for (number, text) in text.lines().enumerate() {
-            let line = number + 1;
-            let text = text.split('#').next().unwrap_or_default().trim();
-            if text.is_empty() {
-                continue;
-            }
-            let register = register(text, line).map_err(|text| TableError { line, text })?;
-            map.insert(register)?;
+impl Kind {
+    /// How many addresses it takes.
+    pub const fn words(self) -> u16 {
+        match self {
+            Kind::Bit | Kind::U16 | Kind::I16 => 1,
+            Kind::U32 | Kind::I32 | Kind::F32 => 2,
         }
-        Ok(map)
     }
 
-    fn insert(&mut self, register: Register) -> Result<(), TableError> {
-        let taken = (0..register.words)
-            .filter_map(|word| self.containing(register.address.checked_add(word)?))
-            .next();
-        if let Some(other) = taken {
-            return Err(TableError {
-                line: register.line,
-                text: format!("overlaps the register of line {}", other.line),
-            });
+    /// How many bits it has.
+    pub const fn bits(self) -> u8 {
+        match self {
+            Kind::Bit => 1,
+            Kind::U16 | Kind::I16 => 16,
+            Kind::U32 | Kind::I32 | Kind::F32 => 32,
         }
-        self.registers.insert(register.address, register);
-        Ok(())
+    }
+
+    /// The lowest value that it can hold.
+    pub const fn lowest(self) -> i64 {
+        match self {
+            Kind::I16 => i16::MIN as i64,
+            Kind::I32 => i32::MIN as i64,
+            Kind::Bit | Kind::U16 | Kind::U32 | Kind::F32 => 0,
+        }
+    }
+
+    /// The highest value that it can hold.
+    pub const fn highest(self) -> i64 {
+        match self {
+            Kind::Bit => 1,
+            Kind::U16 => u16::MAX as i64,
+            Kind::I16 => i16::MAX as i64,
+            Kind::I32 => i32::MAX as i64,
+            Kind::U32 | Kind::F32 => u32::MAX as i64,
+        }
+    }
+
+    /// Its name in a file: `u16`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kind::Bit => "bit",
+            Kind::U16 => "u16",
+            Kind::I16 => "i16",
+            Kind::U32 => "u32",
+            Kind::I32 => "i32",
+            Kind::F32 => "f32",
+        }
+    }
+}
+
+/// What counts are multiplied with: `multiply / divide`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Scale {
+    /// Above the line.
+    pub multiply: i64,
+    /// Below the line; more than 0.
+    pub divide: i64,
+}
+
+/// The order of the two words of a 32-bit value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WordOrder {
+    /// The high word has the lower address.
+    HighFirst,
+    /// The low word has the lower address.
+    LowFirst,
+}
+
+/// What writing a register does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum WriteEffect {
+    /// It changes its value, and nothing that cannot be put back by writing it again.
+    Writes,
+    /// It writes non-volatile memory.
+    Persists,
+    /// It changes the address or the line.
+    Readdresses,
+    /// Something may move.
+    Moves,
+    /// The device is reset, or others of its values are.
+    Resets,
+}
+
+impl Register {
+    /// The addresses it takes.
+    pub fn addresses(&self) -> std::ops::RangeInclusive<u16> {
+        self.address..=self.address.saturating_add(self.kind.words() - 1)
+    }
+
+    /// The lowest value it may have.
+    pub fn lowest(&self) -> i64 {
+        self.low.unwrap_or(self.kind.lowest())
+    }
+
+    /// The highest value it may have.
+    pub fn highest(&self) -> i64 {
+        self.high.unwrap_or(self.kind.highest())
+    }
+}
+
+impl RegisterTable {
+    /// A table without values.
+    pub fn new(holes: Holes) -> RegisterTable {
+        RegisterTable {
+            holes,
+            registers: BTreeMap::new(),
+        }
+    }
+
+    /// Adds a value.
+    ///
+    /// # Errors
+    /// The value that has one of its addresses already.
+    pub fn insert(&mut self, register: Register) -> Result<(), Register> {
+        match self.in_the_way(&register) {
+            Some(other) => Err(other.clone()),
+            None => {
+                self.registers.insert(register.address, register);
+                Ok(())
+            }
+        }
+    }
+
+    fn in_the_way(&self, register: &Register) -> Option<&Register> {
+        register
+            .addresses()
+            .find_map(|address| self.containing(address))
     }
 
     /// The value that starts at `address`.
@@ -107,13 +264,26 @@ impl RegisterMap {
 
     /// The value that `address` belongs to: its only register, or one of two.
     pub fn containing(&self, address: u16) -> Option<&Register> {
-        let (start, register) = self.registers.range(..=address).next_back()?;
-        (address - start < register.words).then_some(register)
+        let (_, register) = self.registers.range(..=address).next_back()?;
+        register.addresses().contains(&address).then_some(register)
     }
 
     /// Every value, in address order.
     pub fn registers(&self) -> impl Iterator<Item = &Register> {
         self.registers.values()
+    }
+
+    /// The addresses beside the values of the table that belong to none, in order: after each value or row of values
+    /// one, and the one before the first.
+    pub fn holes_beside(&self) -> BTreeSet<u16> {
+        let before = self.registers.keys().map(|start| start.checked_sub(1));
+        let after = self.registers.values();
+        let after = after.map(|register| register.addresses().end().checked_add(1));
+        before
+            .chain(after)
+            .flatten()
+            .filter(|address| self.containing(*address).is_none())
+            .collect()
     }
 
     /// How many values there are.
@@ -127,85 +297,86 @@ impl RegisterMap {
     }
 }
 
-fn register(text: &str, line: usize) -> Result<Register, String> {
-    let columns: Vec<&str> = text.split('|').map(str::trim).collect();
-    let [address, access, kind, range, default, unit, persists, name] = columns[..] else {
-        return Err(format!("{} columns instead of 8", columns.len()));
-    };
-    let (signed, words) = match kind {
-        "u16" => (false, 1),
-        "i16" => (true, 1),
-        "u32" => (false, 2),
-        "i32" => (true, 2),
-        other => return Err(format!("`{other}` is no type: u16, i16, u32, i32")),
-    };
-    let (low, high) = limits(range, signed, words)?;
-    let default = match default {
-        "-" => None,
-        text => Some(integer(text)?),
-    };
-    if let Some(value) = default.filter(|value| !(low..=high).contains(value)) {
-        return Err(format!("the default {value} is outside {low}..{high}"));
+impl RegisterMap {
+    /// Gives the map a table, in the place of the one it had.
+    pub fn set_table(&mut self, table: Table, values: RegisterTable) {
+        self.tables.insert(table, values);
     }
-    let address = u16::try_from(integer(address)?)
-        .ok()
-        .filter(|address| address.checked_add(words - 1).is_some())
-        .ok_or_else(|| format!("`{address}` is no register address"))?;
-    Ok(Register {
-        address,
-        words,
-        name: name.to_owned(),
-        access: access_of(access)?,
-        signed,
-        low,
-        high,
-        default,
-        unit: if unit == "-" { "" } else { unit }.to_owned(),
-        persists: persists_of(persists)?,
-        line,
-    })
-}
 
-fn limits(text: &str, signed: bool, words: u16) -> Result<(i64, i64), String> {
-    let bits = 16 * u32::from(words);
-    let (lowest, highest) = if signed {
-        (-(1_i64 << (bits - 1)), (1_i64 << (bits - 1)) - 1)
-    } else {
-        (0, (1_i64 << bits) - 1)
-    };
-    if text == "-" {
-        return Ok((lowest, highest));
+    /// A table, if the device has it.
+    pub fn table(&self, table: Table) -> Option<&RegisterTable> {
+        self.tables.get(&table)
     }
-    let (low, high) = text
-        .split_once("..")
-        .ok_or_else(|| format!("`{text}` is no range: low..high"))?;
-    let (low, high) = (integer(low)?, integer(high)?);
-    if low > high || low < lowest || high > highest {
-        return Err(format!("the range {low}..{high} does not fit the type"));
-    }
-    Ok((low, high))
-}
 
-fn integer(text: &str) -> Result<i64, String> {
-    Integer::parse(text)
-        .and_then(|integer| i64::try_from(integer.value).ok())
-        .ok_or_else(|| format!("`{text}` is no number"))
-}
-
-fn access_of(text: &str) -> Result<Access, String> {
-    match text {
-        "r" => Ok(Access::ReadOnly),
-        "w" => Ok(Access::WriteOnly),
-        "rw" => Ok(Access::ReadWrite),
-        other => Err(format!("`{other}` is no access: r, w, rw")),
+    /// The tables that the device has.
+    pub fn tables(&self) -> impl Iterator<Item = (Table, &RegisterTable)> {
+        self.tables.iter().map(|(table, values)| (*table, values))
     }
 }
 
-fn persists_of(text: &str) -> Result<Option<bool>, String> {
-    match text {
-        "-" => Ok(None),
-        "yes" => Ok(Some(true)),
-        "no" => Ok(Some(false)),
-        other => Err(format!("`{other}` is neither yes, no nor -")),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn register(address: u16, kind: Kind) -> Register {
+        Register {
+            address,
+            name: "a".to_owned(),
+            kind,
+            access: Access::ReadWrite,
+            low: None,
+            high: Some(10),
+            default: None,
+            unit: String::new(),
+            scale: None,
+            word_order: None,
+            persists: None,
+            effects: None,
+            codes: BTreeMap::new(),
+            bits: BTreeMap::new(),
+            line: 1,
+        }
+    }
+
+    #[test]
+    fn a_value_has_its_addresses_for_itself() {
+        let mut table = RegisterTable::default();
+        table.insert(register(6, Kind::U32)).unwrap();
+        for (address, kind) in [
+            (5, Kind::I32),
+            (6, Kind::U16),
+            (7, Kind::U16),
+            (7, Kind::F32),
+        ] {
+            let in_the_way = table.insert(register(address, kind)).unwrap_err();
+            assert_eq!(in_the_way.address, 6, "{address} {kind:?}");
+        }
+        table.insert(register(8, Kind::U16)).unwrap();
+        assert_eq!(table.len(), 2);
+        assert_eq!(table.containing(7).unwrap().address, 6);
+        assert!(table.register(7).is_none() && table.containing(9).is_none());
+    }
+
+    #[test]
+    fn limits_are_those_of_the_type_where_none_are_given() {
+        let one = register(1, Kind::I16);
+        assert_eq!((one.lowest(), one.highest()), (-32_768, 10));
+        assert_eq!(Kind::U32.highest(), 4_294_967_295);
+        assert_eq!(Kind::Bit.highest(), 1);
+    }
+
+    #[test]
+    fn holes_lie_beside_values() {
+        let mut table = RegisterTable::default();
+        for (address, kind) in [
+            (0, Kind::U16),
+            (1, Kind::U32),
+            (5, Kind::U16),
+            (0xFFFF, Kind::U16),
+        ] {
+            table.insert(register(address, kind)).unwrap();
+        }
+        assert_eq!(table.holes_beside(), BTreeSet::from([3, 4, 6, 0xFFFE]));
+        assert!(RegisterTable::default().holes_beside().is_empty());
     }
 }

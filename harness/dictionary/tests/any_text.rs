@@ -1,7 +1,6 @@
 //! No text makes a reader panic, and what comes out keeps its promises.
 
 use fieldproof_dictionary::eds;
-use fieldproof_dictionary::registers::RegisterMap;
 use proptest::prelude::*;
 
 /// Lines that reach deep into the reader.
@@ -85,25 +84,5 @@ proptest! {
     #[test]
     fn eds_of_likely_lines(lines in prop::collection::vec(line(), 0..60)) {
         check(&lines.join("\n"));
-    }
-
-    #[test]
-    fn registers_of_any_text(text in "\\PC{0,200}") {
-        let _ = RegisterMap::parse(&text);
-    }
-
-    #[test]
-    fn registers_of_likely_rows(rows in prop::collection::vec(
-        "(-?(0x)?[0-9]{1,6} \\| (r|w|rw) \\| [ui](16|32) \\| (-|-?[0-9]{1,11}\\.\\.-?[0-9]{1,11}) \\| (-|-?[0-9]{1,5}) \\| - \\| (yes|no|-) \\| x)?",
-        0..20,
-    )) {
-        if let Ok(map) = RegisterMap::parse(&rows.join("\n")) {
-            let mut next = 0_u32;
-            for register in map.registers() {
-                prop_assert!(u32::from(register.address) >= next);
-                next = u32::from(register.address) + u32::from(register.words);
-                prop_assert!(next <= 0x1_0000 && register.low <= register.high);
-            }
-        }
     }
 }

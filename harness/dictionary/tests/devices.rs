@@ -1,7 +1,6 @@
-//! The EDS files and register tables of the devices.
+//! The EDS files of the devices.
 
 use fieldproof_dictionary::eds::{self, Eds};
-use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_dictionary::{Access, DataType, ObjectKind};
 
 macro_rules! fixture {
@@ -194,50 +193,6 @@ fn huacheng_mapping_table() {
     assert_eq!(mapped(0x1A01), [2, 0x6064_0020, 0x606C_0020]);
     assert_eq!(number(&eds, 0x1401, 1, 2), 0x302);
     assert!(eds.dictionary.object(0x6068).is_none());
-}
-
-#[test]
-fn register_tables() {
-    let encoder =
-        RegisterMap::parse(fixture!("liaomiao-encoder/liaomiao-encoder.registers")).unwrap();
-    assert_eq!(encoder.len(), 19);
-    assert!(encoder.register(0x000A).is_none());
-    let speed = encoder.register(4).unwrap();
-    assert_eq!((speed.signed, speed.low, speed.high), (true, -15000, 15000));
-    assert_eq!(encoder.register(1).unwrap().default, Some(32));
-    assert_eq!(encoder.register(7).unwrap().access, Access::WriteOnly);
-
-    let servo = RegisterMap::parse(fixture!("huacheng-ssts1/huacheng-ssts1.registers")).unwrap();
-    assert_eq!(servo.len(), 137);
-    let speed = servo.register(325).unwrap();
-    assert_eq!((speed.low, speed.high, speed.words), (-6000, 6000, 1));
-    assert_eq!(servo.containing(321).unwrap().address, 320);
-    assert!(servo.containing(322).is_none());
-    assert_eq!(
-        servo
-            .registers()
-            .filter(|register| register.words == 2)
-            .count(),
-        20
-    );
-
-    let inverter = RegisterMap::parse(fixture!("teco-jn5-cm-can/teco-a510.registers")).unwrap();
-    assert_eq!(inverter.len(), 21);
-    let module = eds::read(TECO);
-    for register in inverter.registers() {
-        let sub = u8::try_from(register.address - 0x2500 + 1).unwrap();
-        let entry = module.dictionary.entry(0x2025, sub).unwrap();
-        assert_eq!(
-            entry.access.writable(),
-            register.access.writable(),
-            "{:04X}",
-            register.address
-        );
-        assert_eq!(
-            entry.high_limit.unwrap().value(1),
-            i128::from(register.high)
-        );
-    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use fieldproof_dictionary::Dictionary;
 use fieldproof_link::StimulusKind;
-use fieldproof_suite::device::{DeviceDescription, Feature, PortDescription};
+use fieldproof_suite::device::{DeviceDescription, Feature, FunctionCode, PortDescription};
 use fieldproof_suite::model::{
     Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
     SendBytes, Step, Stimulate, StimulusName,
@@ -88,6 +88,7 @@ fn missing_need(
                 multiplexer(*missing)
             ))
         }
+        Need::Functions(functions) => missing_function(functions, device),
         Need::Feature(feature) if !is_claimed(*feature, device, bench) => Some(format!(
             "the device does not claim {}",
             feature_name(*feature)
@@ -98,6 +99,19 @@ fn missing_need(
         )),
         _ => None,
     })
+}
+
+fn missing_function(functions: &[FunctionCode], device: &DeviceDescription) -> Option<String> {
+    let modbus = device.modbus.as_ref();
+    match modbus.filter(|modbus| !modbus.functions.is_empty()) {
+        None => Some("the description does not say which functions the device has".to_owned()),
+        Some(modbus) => {
+            let missing = functions
+                .iter()
+                .find(|function| !modbus.claims(**function))?;
+            Some(format!("the device does not claim function {missing}"))
+        }
+    }
 }
 
 fn missing_objects(case: &Case, dictionary: Option<&Dictionary>) -> Option<String> {

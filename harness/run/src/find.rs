@@ -1,37 +1,54 @@
-//! What a device's object dictionary has of what a case asks for.
+//! What a device has of what a case asks for: by its object dictionary, its register map, its description.
 
 mod absent;
+mod function;
 mod object;
 mod pdo;
+mod register;
 #[cfg(test)]
 mod tests;
 
 use fieldproof_dictionary::Dictionary;
+use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_suite::device::DeviceDescription;
 use fieldproof_suite::model::{Except, Query, QueryKind};
 use fieldproof_suite::{Columns, Suite};
 
-/// `suite` with its tables filled from the dictionary of the device with the node-ID `node`.
-pub fn fill(suite: &Suite, dictionary: Option<&Dictionary>, node: u8) -> Suite {
-    suite.filled(&|query| find(query, dictionary, node))
+/// What is known of a device beside its description.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Known<'a> {
+    /// Its object dictionary.
+    pub dictionary: Option<&'a Dictionary>,
+    /// Its register map.
+    pub registers: Option<&'a RegisterMap>,
 }
 
-/// As [`fill`], with at most `most` rows of every table that the dictionary fills, spread over all there are.
-pub fn fill_some(suite: &Suite, dictionary: Option<&Dictionary>, node: u8, most: u16) -> Suite {
-    suite.filled(&|query| spread(find(query, dictionary, node), Some(most)))
+/// `suite` with its tables filled from what is known of a device.
+pub fn fill(suite: &Suite, device: &DeviceDescription, known: Known<'_>) -> Suite {
+    suite.filled(&|query| find(query, device, known))
 }
 
-/// Everything in `dictionary` that is as `query` says, in the order of the dictionary.
-fn find(query: &Query, dictionary: Option<&Dictionary>, node: u8) -> Vec<Columns> {
-    let Some(dictionary) = dictionary else {
-        return Vec::new();
-    };
+/// As [`fill`], with at most `most` rows of every table that is filled, spread over all there are.
+pub fn fill_some(suite: &Suite, device: &DeviceDescription, known: Known<'_>, most: u16) -> Suite {
+    suite.filled(&|query| spread(find(query, device, known), Some(most)))
+}
+
+/// Everything that is as `query` says, in the order of the dictionary or of the addresses.
+fn find(query: &Query, device: &DeviceDescription, known: Known<'_>) -> Vec<Columns> {
+    let node = device.canopen.as_ref().map_or(1, |canopen| canopen.node);
     let found = match query.is {
-        QueryKind::Object => object::objects(query, dictionary, node),
-        QueryKind::AbsentObject => absent::objects(query, dictionary),
-        QueryKind::AbsentSubIndex => absent::sub_indices(query, dictionary),
-        QueryKind::Tpdo | QueryKind::Rpdo => pdo::pdos(query, dictionary, node),
+        QueryKind::Object => known.dictionary.map(|it| object::objects(query, it, node)),
+        QueryKind::AbsentObject => known.dictionary.map(|it| absent::objects(query, it)),
+        QueryKind::AbsentSubIndex => known.dictionary.map(|it| absent::sub_indices(query, it)),
+        QueryKind::Tpdo | QueryKind::Rpdo => known.dictionary.map(|it| pdo::pdos(query, it, node)),
+        QueryKind::Register => known.registers.map(|it| register::registers(query, it)),
+        QueryKind::Hole => known.registers.map(|it| register::holes(query, it)),
+        QueryKind::Function => device
+            .modbus
+            .as_ref()
+            .map(|it| function::functions(query, it)),
     };
-    spread(found, query.at_most)
+    spread(found.unwrap_or_default(), query.at_most)
 }
 
 /// As many of `all` as asked for, at even distances, the first and the last among them.

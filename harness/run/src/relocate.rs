@@ -1,7 +1,7 @@
 //! Moves the printed frames of a worked example from the node they were printed for to the node on the bench.
 
 use fieldproof_can::{Frame, Id};
-use fieldproof_suite::model::{Case, Located, Step};
+use fieldproof_suite::model::{Alternative, Case, Located, Step};
 use fieldproof_suite::scalar::{FrameText, PatternText};
 use fieldproof_wire::canopen::{NodeId, Service, cob_id, identify};
 
@@ -24,7 +24,13 @@ fn relocate_step(step: &mut Located<Step>, from: NodeId, to: NodeId) {
         Step::Send(send) => send.frame = FrameText(relocate_frame(send.frame.0, from, to)),
         Step::Expect(expect) => {
             let pattern = expect.frame.0;
-            expect.frame = PatternText(pattern.with_id(relocate_id(pattern.id(), from, to)));
+            let moved = relocate_id(pattern.id(), from, to);
+            expect.frame = PatternText(pattern.with_id(moved));
+            for alternative in &mut expect.or {
+                if let Alternative::Frame(frame) = alternative {
+                    *frame = PatternText(frame.0.with_id(moved));
+                }
+            }
         }
         Step::ExpectSilence(silence) => {
             for id in &mut silence.of {

@@ -267,7 +267,7 @@ impl Tester<'_> {
         let Some(address) = self.address else {
             return Ok(());
         };
-        for (register, value) in (first..).zip(values) {
+        for (register, value) in (first..=u16::MAX).zip(values) {
             let mut pdu = vec![0x06];
             pdu.extend(register.to_be_bytes());
             pdu.extend(value.to_be_bytes());

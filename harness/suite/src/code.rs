@@ -100,6 +100,11 @@ codes! {
     /// A deviation from a check that no suite has.
     UNKNOWN_CHECK = "S051";
 
+    /// A register that has an address of another.
+    REGISTER_TWICE = "S052";
+    /// Limits that leave nothing between them, or a default outside them.
+    OUTSIDE_LIMITS = "S053";
+
     /// Not a link.
     LINK = "S060";
     /// Two devices of a bench with one name.

@@ -1,15 +1,19 @@
 //! What a device claims of itself: `device.yaml` (the PICS and what surrounds it).
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::time::Duration;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, json_schema};
 use serde::Deserialize;
 
 use crate::Position;
+use crate::code;
 use crate::identity::Identity;
 use crate::model::{Citation, Effect, Source};
+use crate::problem::Wrong;
 use crate::read_with::{address, node};
+use crate::scalar::{Text, read_as_text, whole_number};
 
 /// A device description.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -96,7 +100,75 @@ pub struct ModbusDescription {
     /// Its register map, a file beside the description.
     #[serde(default)]
     pub registers: Option<String>,
+    /// The functions it has, with the sub-functions of 8 and 43: `[3, 6, 16, 8/0, 43/14]`. Where nothing is said,
+    /// nothing is known.
+    #[serde(default)]
+    pub functions: Vec<FunctionCode>,
 }
+
+impl ModbusDescription {
+    /// Whether it has a function, as far as the description says so.
+    pub fn claims(&self, asked: FunctionCode) -> bool {
+        self.functions.iter().any(|claimed| {
+            claimed.function == asked.function
+                && (asked.sub_function.is_none() || claimed.sub_function == asked.sub_function)
+        })
+    }
+}
+
+/// A Modbus function, or one sub-function of it: `3`, `0x10`, `8/4`, `43/14`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FunctionCode {
+    /// 1 to 127.
+    pub function: u8,
+    /// Of 08h the sub-function, of 2Bh the MEI type.
+    pub sub_function: Option<u16>,
+}
+
+/// `08h`, `08h/04h`
+impl fmt::Display for FunctionCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:02X}h", self.function)?;
+        match self.sub_function {
+            Some(sub) => write!(f, "/{sub:02X}h"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Text for FunctionCode {
+    const EXPECTED: &'static str = "a function such as 3 or 8/4";
+
+    fn parse(text: &str) -> Result<FunctionCode, Wrong> {
+        let (function, sub) = match text.split_once('/') {
+            Some((function, sub)) => (function, Some(sub)),
+            None => (text, None),
+        };
+        let sub = sub.map(|sub| whole_number(sub).and_then(|sub| u16::try_from(sub).ok()));
+        let function = whole_number(function).and_then(|code| u8::try_from(code).ok());
+        match (function.filter(|code| (1..=127).contains(code)), sub) {
+            (Some(function), None) => Ok(FunctionCode {
+                function,
+                sub_function: None,
+            }),
+            (Some(function), Some(Some(sub))) => Ok(FunctionCode {
+                function,
+                sub_function: Some(sub),
+            }),
+            _ => Err(Wrong::new(
+                code::NUMBER,
+                format!("`{text}` is no function"),
+                "expected 1 to 127, or a function and a sub-function such as 8/4",
+            )),
+        }
+    }
+
+    fn schema() -> Schema {
+        json_schema!({"type": ["integer", "string"]})
+    }
+}
+
+read_as_text!(FunctionCode);
 
 /// How fast a device promises to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use serde::de::{Deserialize, Deserializer, Error, IgnoredAny};
 use crate::code;
 use crate::file::{DecodeFile, ModbusException};
 use crate::forms::OneOrMany;
-use crate::model::{Decode, Located};
+use crate::model::{Alternative, Decode, Located};
 use crate::problem::Wrong;
 use crate::scalar::{BitRate, Bytes, CanId, Time};
 
@@ -36,6 +36,12 @@ pub(crate) fn bit_rate<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32
 pub(crate) fn can_ids<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<u16>, D::Error> {
     let ids = OneOrMany::<CanId>::deserialize(deserializer)?;
     Ok(ids.0.into_iter().map(|id| id.0).collect())
+}
+
+pub(crate) fn alternatives<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<Alternative>, D::Error> {
+    OneOrMany::<Alternative>::deserialize(deserializer).map(|alternatives| alternatives.0)
 }
 
 pub(crate) fn exceptions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<u8>, D::Error> {
@@ -130,6 +136,14 @@ pub(crate) fn optional_address<'de, D: Deserializer<'de>>(
 ) -> Result<Option<u8>, D::Error> {
     let address = Option::<u8>::deserialize(deserializer)?;
     address.map(|address| within(address, 1, 247)).transpose()
+}
+
+/// How many registers are alike.
+pub(crate) fn ten_thousand<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u16>, D::Error> {
+    let count = Option::<u16>::deserialize(deserializer)?;
+    count.map(|count| within(count, 1, 10_000)).transpose()
 }
 
 /// How often a `repeat` is played.

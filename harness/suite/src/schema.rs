@@ -6,7 +6,7 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue::Catalogue;
-use crate::file::{BenchFile, DeviceFile, SuiteFile};
+use crate::file::{BenchFile, DeviceFile, RegistersFile, SuiteFile};
 
 /// The JSON Schema (draft 2020-12) of suite files.
 pub fn schema() -> Value {
@@ -36,6 +36,15 @@ pub fn schema() -> Value {
 /// The JSON Schema (draft 2020-12) of device descriptions.
 pub fn device_schema() -> Value {
     let mut schema = generator().into_root_schema_for::<DeviceFile>().to_value();
+    widen_scalars(&mut schema);
+    schema
+}
+
+/// The JSON Schema (draft 2020-12) of register maps.
+pub fn registers_schema() -> Value {
+    let mut schema = generator()
+        .into_root_schema_for::<RegistersFile>()
+        .to_value();
     widen_scalars(&mut schema);
     schema
 }
@@ -224,9 +233,11 @@ mod tests {
             let texts = yaml_files(&root.join(folder));
             assert!(texts.len() > 3, "{} files in {folder}", texts.len());
             for text in texts {
-                let schema = match text.contains("\nbench:") {
-                    true => &bench_schema(),
-                    false => &schema,
+                let says = |key: &str| text.lines().any(|line| line.starts_with(key));
+                let schema = match (says("bench:"), says("registers:")) {
+                    (true, _) => &bench_schema(),
+                    (_, true) => &registers_schema(),
+                    _ => &schema,
                 };
                 assert_eq!(errors(schema, &text), Vec::<String>::new(), "{text}");
             }

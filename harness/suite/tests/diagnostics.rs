@@ -1,7 +1,7 @@
 //! Every diagnostic has a file that shows it and a section that explains it.
 //!
 //! A file in fixtures/suites-invalid is a suite, or with the ending `.device.yaml` a device description, with
-//! `.bench.yaml` a bench; the text beside it is what must be said of it, one line a diagnostic:
+//! `.registers.yaml` a register map, with `.bench.yaml` a bench; the text beside it is what must be said of it, one line a diagnostic:
 //! `line:column: code message | label | help`, and indented the other places that matter. With `UPDATE_GOLDEN` set, what
 //! comes is written in the place of what is expected.
 
@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::{
-    Diagnostic, SourceFile, code, load, load_bench, load_catalogue, load_device, unknown_checks,
-    unknown_entries,
+    Diagnostic, SourceFile, code, load, load_bench, load_catalogue, load_device, load_registers,
+    unknown_checks, unknown_entries,
 };
 
 fn root() -> PathBuf {
@@ -53,6 +53,9 @@ fn diagnostics(path: &Path) -> Vec<Diagnostic> {
             Ok(device) => unknown_checks(&device, &file.path, &checks()),
             Err(diagnostics) => diagnostics,
         };
+    }
+    if file.path.ends_with(".registers.yaml") {
+        return load_registers(&file).unwrap_err();
     }
     if file.path.ends_with(".bench.yaml") {
         return load_bench(&file).unwrap_err();

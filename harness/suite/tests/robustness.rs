@@ -1,6 +1,6 @@
 //! Whatever stands in a file, it is read or refused.
 
-use fieldproof_suite::{Environment, SourceFile, load, load_device};
+use fieldproof_suite::{Environment, SourceFile, load, load_device, load_registers};
 use proptest::prelude::*;
 
 const SUITE: &str = r##"language: 1
@@ -75,6 +75,55 @@ fn the_sample_itself_is_right() {
     assert_eq!(loaded.suites.len(), 1);
 }
 
+const REGISTERS: &str = "language: 1
+registers: sample
+title: A sample
+word-order: high-first
+holding:
+  holes: unknown
+  ranges:
+    - {address: 65530, count: 3, name: a, type: i32, access: rw, low: -5, high: 5, default: 0, effect: writes}
+    - {address: 0, count: 65530, name: b, access: r, codes: {0: off, 0x10: on}, bits: {0: a, 15: b}}
+coils:
+  holes: refused
+  ranges:
+    - {address: 65535, name: c, access: w, default: 1, persists: true, effect: [moves, unknown]}
+";
+
+/// What is read without an error keeps its promises.
+fn read_registers(text: String) -> Result<(), TestCaseError> {
+    let map = match load_registers(&file(text)) {
+        Ok(map) => map,
+        Err(diagnostics) => {
+            prop_assert!(!diagnostics.is_empty());
+            return Ok(());
+        }
+    };
+    for (_, table) in map.tables() {
+        let mut next = 0_u32;
+        for register in table.registers() {
+            prop_assert!(u32::from(register.address) >= next);
+            next = u32::from(register.address) + u32::from(register.kind.words());
+            prop_assert!(next <= 0x1_0000 && register.lowest() <= register.highest());
+            let range = register.lowest()..=register.highest();
+            prop_assert!(
+                register
+                    .default
+                    .is_none_or(|default| range.contains(&default))
+            );
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn too_many_registers_of_the_sample_are_refused() {
+    let refused = load_registers(&file(REGISTERS.to_owned())).unwrap_err();
+    let codes: Vec<&str> = refused.iter().map(|one| one.code).collect();
+    assert_eq!(codes, ["S022"]);
+    read_registers(REGISTERS.replace("65530, name: b", "10000, name: b")).unwrap();
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
@@ -94,6 +143,19 @@ proptest! {
             text.splice(start..end, put.chars());
         }
         read(text.into_iter().collect())?;
+    }
+
+    #[test]
+    fn a_damaged_register_map_is_read_or_refused(
+        cuts in proptest::collection::vec((0..REGISTERS.len(), 0..8usize, "[0-9a-z:, ]{0,4}|\\PC{0,2}"), 1..3)
+    ) {
+        let mut text: Vec<char> = REGISTERS.replace("65530, name: b", "10000, name: b").chars().collect();
+        for (at, length, put) in cuts {
+            let start = at.min(text.len());
+            let end = (start + length).min(text.len());
+            text.splice(start..end, put.chars());
+        }
+        read_registers(text.into_iter().collect())?;
     }
 
     #[test]

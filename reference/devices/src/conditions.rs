@@ -1,21 +1,53 @@
-//! Conditions under which a device refuses to have its values written.
+//! Conditions under which a device refuses to have its values written or read.
+
+use std::collections::BTreeSet;
 
 use fieldproof_link::{Instant, NotOffered};
 
 use crate::canopen::{Abort, Answer, HARDWARE, Slave};
 
-/// `hardware-fault` refuses writes with an EMCY, `local-control` without one.
+/// With an EMCY; the others come without one.
+const HARDWARE_FAULT: &str = "hardware-fault";
+/// The panel has control.
+const LOCAL_CONTROL: &str = "local-control";
+
+/// What a condition makes impossible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Refuses {
+    Writing,
+    Reading,
+    Both,
+}
+
+/// What there is, and how an access is refused under it.
+const CONDITIONS: &[(&str, Refuses, Abort)] = &[
+    (HARDWARE_FAULT, Refuses::Writing, Abort::HARDWARE),
+    (LOCAL_CONTROL, Refuses::Writing, Abort::LOCAL_CONTROL),
+    ("wrong-device-state", Refuses::Writing, Abort::DEVICE_STATE),
+    ("storage-refused", Refuses::Writing, Abort::CANNOT_STORE),
+    ("out-of-memory", Refuses::Writing, Abort::OUT_OF_MEMORY),
+    (
+        "internal-incompatibility",
+        Refuses::Writing,
+        Abort::INTERNAL,
+    ),
+    ("general-error", Refuses::Writing, Abort::GENERAL),
+    ("no-connection-left", Refuses::Both, Abort::NO_CONNECTION),
+    ("no-dictionary", Refuses::Both, Abort::NO_DICTIONARY),
+    ("no-data", Refuses::Reading, Abort::NO_DATA),
+];
+
+/// Those that hold.
 #[derive(Debug, Default)]
 pub(crate) struct Conditions {
-    hardware_fault: bool,
-    local_control: bool,
+    active: BTreeSet<&'static str>,
 }
 
 impl Conditions {
     /// Brings the condition called `name` about, or ends it.
     ///
     /// # Errors
-    /// [`NotOffered`]: another condition.
+    /// [`NotOffered`]: there is none of this name.
     pub(crate) fn set(
         &mut self,
         now: Instant,
@@ -23,39 +55,47 @@ impl Conditions {
         active: bool,
         slave: &mut Slave,
     ) -> Result<(), NotOffered> {
-        match name {
-            "hardware-fault" => {
-                if std::mem::replace(&mut self.hardware_fault, active) != active {
-                    slave.set_error(now, HARDWARE, active);
-                }
-            }
-            "local-control" => self.local_control = active,
-            _ => return Err(NotOffered),
+        let found = CONDITIONS.iter().find(|(known, ..)| *known == name);
+        let (name, ..) = found.ok_or(NotOffered)?;
+        let changed = if active {
+            self.active.insert(name)
+        } else {
+            self.active.remove(name)
+        };
+        if changed && *name == HARDWARE_FAULT {
+            slave.set_error(now, HARDWARE, active);
         }
         Ok(())
     }
 
     /// What a write is answered under them.
     pub(crate) fn answer(&self) -> Answer {
-        if self.hardware_fault {
-            Answer::Refused(Abort::HARDWARE)
-        } else if self.local_control {
-            Answer::Refused(Abort::LOCAL_CONTROL)
-        } else {
-            Answer::Now
-        }
+        self.answer_to(Refuses::Writing)
     }
 
     /// Whether the panel has control.
     pub(crate) fn is_local(&self) -> bool {
-        self.local_control
+        self.active.contains(LOCAL_CONTROL)
     }
 
-    pub(crate) fn state(&self) -> [(String, String); 2] {
-        [
-            ("hardware-fault", self.hardware_fault),
-            ("local-control", self.local_control),
-        ]
-        .map(|(name, active)| (name.to_owned(), active.to_string()))
+    /// What a read is answered under them.
+    pub(crate) fn answer_to_reading(&self) -> Answer {
+        self.answer_to(Refuses::Reading)
+    }
+
+    fn answer_to(&self, access: Refuses) -> Answer {
+        let mut holding = CONDITIONS.iter().filter(|(name, refuses, _)| {
+            self.active.contains(name) && (*refuses == access || *refuses == Refuses::Both)
+        });
+        holding
+            .next()
+            .map_or(Answer::Now, |(_, _, abort)| Answer::Refused(*abort))
+    }
+
+    pub(crate) fn state(&self) -> impl Iterator<Item = (String, String)> {
+        CONDITIONS.iter().map(|(name, ..)| {
+            let active = self.active.contains(name);
+            ((*name).to_owned(), active.to_string())
+        })
     }
 }

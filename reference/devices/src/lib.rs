@@ -14,6 +14,7 @@ pub mod inverter;
 mod kinco_servo;
 mod liaomiao_encoder;
 pub mod modbus;
+mod modbus_complete;
 #[cfg(test)]
 mod script;
 mod teco_jn5_cm_can;
@@ -35,6 +36,8 @@ pub fn kinds() -> &'static [DeviceKind] {
         huacheng_ssts1::KIND,
         kinco_servo::KIND,
         liaomiao_encoder::KIND,
+        modbus_complete::KIND,
+        inverter::KIND,
         teco_jn5_cm_can::KIND,
     ]
 }

@@ -1,10 +1,14 @@
-"""Register maps: one register a line, eight columns apart by `|`, comments after `#`.
+"""The holding registers of a register map: `registers.yaml` beside the description of a device."""
 
-address | access (r, w, rw) | type (u16, i16, u32, i32) | range (low..high or -) | default or - | unit | persists | name
-"""
-
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import yaml
+
+# Signed, and how many registers: the types of a map that are whole numbers.
+TYPES = {"u16": (False, 1), "i16": (True, 1), "u32": (False, 2), "i32": (True, 2)}
 
 
 @dataclass(frozen=True)
@@ -39,34 +43,28 @@ class Register:
 
 
 def read_map(path: Path) -> list[Register]:
-    """The registers of a map, in address order. Raises `ValueError` for a line that is none."""
-    registers: list[Register] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
-        if text := line.split("#")[0].strip():
-            try:
-                registers.append(_register(text))
-            except (KeyError, ValueError) as error:
-                raise ValueError(f"{path}:{number}: {error}") from error
+    """The holding registers of a map, in address order. Raises `ValueError` for a file that is none."""
+    try:
+        ranges = yaml.safe_load(path.read_text(encoding="utf-8"))["holding"]["ranges"]
+        registers = [register for entry in ranges for register in _registers(entry)]
+    except (KeyError, TypeError, yaml.YAMLError) as error:
+        raise ValueError(f"{path}: {error}") from error
     return sorted(registers, key=lambda register: register.address)
 
 
-def _register(text: str) -> Register:
-    address, access, kind, span, default, _unit, _persists, name = (column.strip() for column in text.split("|"))
-    signed, words = {"u16": (False, 1), "i16": (True, 1), "u32": (False, 2), "i32": (True, 2)}[kind]
+def _registers(entry: dict[str, Any]) -> Iterator[Register]:
+    signed, words = TYPES[entry.get("type", "u16")]
     bits = 16 * words
-    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
-    if span != "-":
-        low, high = (int(limit, 0) for limit in span.split(".."))
-    if access not in ("r", "w", "rw"):
-        raise ValueError(f"`{access}` is no access")
-    return Register(
-        address=int(address, 0),
-        readable="r" in access,
-        writable="w" in access,
-        signed=signed,
-        words=words,
-        low=low,
-        high=high,
-        default=None if default == "-" else int(default, 0),
-        name=name,
-    )
+    lowest, highest = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
+    for number in range(entry.get("count", 1)):
+        yield Register(
+            address=entry["address"] + number * words,
+            readable="r" in entry["access"],
+            writable="w" in entry["access"],
+            signed=signed,
+            words=words,
+            low=entry.get("low", lowest),
+            high=entry.get("high", highest),
+            default=entry.get("default"),
+            name=entry["name"],
+        )

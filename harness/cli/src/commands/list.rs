@@ -135,6 +135,10 @@ fn listed_case(suite: &Suite, case: Case) -> ListedCase<'_> {
                 .map(|object| format!("{:04X}:{:02X}", object.index, object.sub));
             format!("object: {}", shown.collect::<Vec<_>>().join(", "))
         }
+        Need::Functions(functions) => {
+            let shown = functions.iter().map(ToString::to_string);
+            format!("function: {}", shown.collect::<Vec<_>>().join(", "))
+        }
     };
     ListedCase {
         suite: &suite.head.suite,

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fieldproof_dictionary::eds;
-use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity};
+use fieldproof_suite::SourceFile;
 
 use crate::complaint::Complaint;
 use crate::exit::Exit;
@@ -101,15 +101,21 @@ fn claims(given: &Given) -> Result<infer::Claims, Complaint> {
 }
 
 fn check_registers(given: &Given) -> Result<(), Complaint> {
-    let text = String::from_utf8_lossy(&given.bytes).into_owned();
-    RegisterMap::parse(&text).map(drop).map_err(|error| {
-        let path = given.from.display().to_string();
-        Complaint::input(problems::of_table_error(
-            &error,
-            &path,
-            &text.as_str().into(),
-        ))
-    })
+    let file = SourceFile {
+        path: given.from.display().to_string(),
+        text: String::from_utf8_lossy(&given.bytes).into_owned(),
+    };
+    fieldproof_suite::load_registers(&file)
+        .map(drop)
+        .map_err(|diagnostics| {
+            let text = file.text.as_str().into();
+            let problems = diagnostics.iter();
+            Complaint::inputs(
+                problems
+                    .map(|diagnostic| problems::of_diagnostic(diagnostic, &text))
+                    .collect(),
+            )
+        })
 }
 
 fn nothing_in_the_way(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Complaint> {

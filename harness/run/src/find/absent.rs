@@ -8,7 +8,7 @@ use fieldproof_suite::model::Query;
 
 use super::{is_meant, place};
 
-/// The indices before and after those there are, in the middle of the gaps between, and those that the query names.
+/// The indices before and after those there are, in the middle of the gaps between, and at the ends of what is asked for.
 pub(super) fn objects(query: &Query, dictionary: &Dictionary) -> Vec<Columns> {
     let indices: Vec<u16> = dictionary.objects().map(|object| object.index).collect();
     let middle = |pair: &[u16]| match pair {
@@ -19,10 +19,8 @@ pub(super) fn objects(query: &Query, dictionary: &Dictionary) -> Vec<Columns> {
     let beside = indices
         .iter()
         .flat_map(|it| [it.saturating_sub(1), it.saturating_add(1)]);
-    // An index that the query names by itself need not be near.
-    let named = query.index.iter().filter(|range| range.from == range.to);
-    let named = named.map(|range| range.from);
-    let candidates: BTreeSet<u16> = beside.chain(middles).chain(named).collect();
+    let ends = query.index.iter().flat_map(|range| [range.from, range.to]);
+    let candidates: BTreeSet<u16> = beside.chain(middles).chain(ends).collect();
     candidates
         .into_iter()
         .filter(|index| (0x1000..=0xFFFE).contains(index))

@@ -111,6 +111,8 @@ fn is_so(query: &Query, value: &ValueOf<'_>) -> bool {
         Has::High => value.high().is_some(),
         Has::Below => value.below().is_some(),
         Has::Above => value.above().is_some(),
+        // No EDS says so.
+        Has::Codes | Has::Bits => false,
     });
     let mappable = query.pdo.is_none_or(|pdo| is_mappable(pdo, entry));
     access && of_type && of_size && has && mappable

@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_dictionary::{Dictionary, eds};
-use fieldproof_suite::{Columns, SourceFile, load};
+use fieldproof_suite::device::DeviceDescription;
+use fieldproof_suite::{Columns, SourceFile, load, load_device, load_registers};
 
-use super::{fill, spread};
+use super::{Known, fill, spread};
 
 const EDS: &str = "[DeviceInfo]
 [1000]
@@ -91,6 +93,47 @@ fn dictionary() -> Dictionary {
     eds::read(EDS).dictionary
 }
 
+fn file(text: &str) -> SourceFile {
+    SourceFile {
+        path: "a.yaml".to_owned(),
+        text: text.to_owned(),
+    }
+}
+
+fn device() -> DeviceDescription {
+    let text = "language: 1
+device: a
+title: A
+ports: {can: {can: 125 kbit/s}, serial: {serial: 9600}}
+canopen: {node: 5, eds: a.eds}
+modbus: {address: 1, functions: [3, 6, 8/0, 0x2B/0x0E]}
+features: []
+";
+    load_device(&file(text)).unwrap()
+}
+
+fn registers() -> RegisterMap {
+    let text = "language: 1
+registers: a
+title: A
+holding:
+  holes: refused
+  ranges:
+    - {address: 4, count: 3, name: word, access: rw, low: 0, high: 65535, effect: writes}
+    - {address: 7, name: speed, type: i16, access: rw, low: -5, high: 5, default: -1, persists: false, effect: [writes, moves]}
+    - {address: 8, name: angle, type: u32, access: rw, high: 5, effect: writes}
+    - {address: 11, name: state, access: r, bits: {0: on}}
+    - {address: 12, name: trigger, access: w, high: 1}
+input:
+  holes: unknown
+  ranges: [{address: 7, name: voltage, access: r, codes: {0: none}}]
+coils:
+  holes: refused
+  ranges: [{address: 65535, name: lamp, access: rw, default: 1, effect: writes}]
+";
+    load_registers(&file(text)).unwrap()
+}
+
 /// The ids and titles of the cases that a table with `query` makes.
 fn cases(head: &str, title: &str) -> Vec<String> {
     let text = format!(
@@ -102,7 +145,11 @@ fn cases(head: &str, title: &str) -> Vec<String> {
         text,
     }]);
     assert_eq!(loaded.diagnostics, []);
-    let suite = fill(&loaded.suites[0], Some(&dictionary()), 5);
+    let known = Known {
+        dictionary: Some(&dictionary()),
+        registers: Some(&registers()),
+    };
+    let suite = fill(&loaded.suites[0], &device(), known);
     let environment = fieldproof_suite::Environment::default();
     suite
         .cases()
@@ -224,6 +271,13 @@ fn the_gaps_are_between_and_beside() {
     );
     let alone = "each: {o: {is: absent-object, index: [1017, 1F80]}}";
     assert_eq!(cases(alone, "{o-index}"), ["s/c[o=1F80:00] 0x1F80"]);
+    assert_eq!(
+        cases(
+            "each: {o: {is: absent-object, index: 1280-12FF}}",
+            "{o-index}"
+        ),
+        ["s/c[o=1280:00] 0x1280", "s/c[o=12FF:00] 0x12FF"]
+    );
 }
 
 #[test]
@@ -245,5 +299,113 @@ fn a_few_are_spread_over_all() {
             "0123456789".into(),
             "0123456789".into()
         )
+    );
+}
+
+#[test]
+fn registers_are_found_by_table_effect_and_limits() {
+    assert_eq!(
+        cases(
+            "each: {r: {is: register, table: holding, access: rw, effect: writes, type: u16, has: [low, high]}}",
+            "{r-name} {r-low} {r-high} {r-count} {r-last}"
+        ),
+        [
+            "s/c[r=4] word 0 0 65535 1 4",
+            "s/c[r=5] word 1 0 65535 1 5",
+            "s/c[r=6] word 2 0 65535 1 6",
+        ]
+    );
+    assert_eq!(
+        cases(
+            "choose: {r: {is: register, has: [below, above, low, high, default], effect: [writes, moves], persists: false}}",
+            "{r} {r-type} {r-low} {r-high} {r-below} {r-above} {r-default} {r-access} {r-table}"
+        ),
+        ["s/c 7 i16 65531 5 65530 6 65535 rw holding"]
+    );
+    assert_eq!(
+        cases("each: {r: {is: register, has: bits}}", "{r-name}"),
+        ["s/c[r=11] state"]
+    );
+    assert_eq!(
+        cases(
+            "each: {r: {is: register, has: codes, table: [input, coils]}}",
+            "{r-name}"
+        ),
+        ["s/c[r=7] voltage"]
+    );
+    assert_eq!(
+        cases(
+            "choose: {r: {is: register, type: boolean, has: default}}",
+            "{r} {r-table} {r-default}"
+        ),
+        ["s/c 65535 coils 1"]
+    );
+    // What is not known is not done, whatever is permitted.
+    assert_eq!(
+        cases(
+            "choose: {r: {is: register, access: wo, effect: [writes, persists, readdresses, moves, resets]}}",
+            "{r}"
+        ),
+        [
+            "s/c: the device has no register that is wo, that is known to do nothing but writes or persists or readdresses or moves or resets"
+        ]
+    );
+}
+
+#[test]
+fn a_row_has_no_gap() {
+    assert_eq!(
+        cases(
+            "each: {r: {is: register, access: readable, row: 2, table: holding}}",
+            "{r-count} {r-last}"
+        ),
+        [
+            "s/c[r=4] 2 5",
+            "s/c[r=5] 2 6",
+            "s/c[r=6] 2 7",
+            "s/c[r=7] 3 9",
+        ]
+    );
+    assert_eq!(
+        cases("choose: {r: {is: register, row: 2, table: coils}}", "{r}"),
+        ["s/c: the device has no register in the table coils, in a row of 2"]
+    );
+}
+
+#[test]
+fn holes_are_those_that_are_said_to_be_refused() {
+    assert_eq!(
+        cases(
+            "each: {h: {is: hole, table: [holding, input]}}",
+            "{h} {h-table}"
+        ),
+        [
+            "s/c[h=3] 3 holding",
+            "s/c[h=10] 10 holding",
+            "s/c[h=13] 13 holding"
+        ]
+    );
+    assert_eq!(
+        cases("each: {h: {is: hole, table: coils}}", "{h}"),
+        ["s/c[h=65534] 65534"]
+    );
+    assert_eq!(
+        cases("each: {h: {is: hole, table: input}}", "{h}"),
+        ["s/c: the device has no address that is said to be refused in the table input"]
+    );
+}
+
+#[test]
+fn functions_are_claimed_or_not() {
+    assert_eq!(
+        cases("each: {f: {is: function, claimed: true}}", "{f:u8be}"),
+        ["s/c[f=3] 03", "s/c[f=6] 06", "s/c[f=8] 08", "s/c[f=43] 2B"]
+    );
+    assert_eq!(
+        cases(
+            "each: {f: {is: function, claimed: false, at-most: 3}}",
+            "{f}"
+        ),
+        ["s/c[f=1] 1", "s/c[f=66] 66", "s/c[f=127] 127"]
     );
 }

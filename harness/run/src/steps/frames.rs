@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use fieldproof_can::{Frame, Id, Pattern};
 use fieldproof_link::{Instant, Origin, PortIndex};
-use fieldproof_suite::model::{Expect, ExpectSilence, Send};
+use fieldproof_suite::model::{Alternative, Expect, ExpectSilence, Send};
 use fieldproof_wire::canopen::{Service, identify};
 use fieldproof_wire::describe::describe_frame;
 
@@ -24,10 +24,21 @@ impl Tester<'_> {
         let (name, promised) = self.promised(pattern.id());
         let within = step.within.unwrap_or(promised);
         let Some((frame, received)) = self.first_frame(pattern.id(), within)? else {
-            return Err(self.nothing_came(pattern, within));
+            return match step.or.contains(&Alternative::Silence) {
+                true => Ok(()),
+                false => Err(with_alternatives(
+                    self.nothing_came(pattern, within),
+                    &step.or,
+                )),
+            };
         };
         if !pattern.matches(&frame) {
-            return Err(wrong_frame(pattern, &frame));
+            if !is_alternative(&step.or, &frame) {
+                return Err(with_alternatives(wrong_frame(pattern, &frame), &step.or));
+            }
+            self.measure_response(name, &received, within)?;
+            self.follow_received(&frame, received.at);
+            return Ok(());
         }
         self.measure_response(name, &received, within)?;
         for rule in &step.decode {
@@ -178,6 +189,22 @@ pub(super) fn wrong_frame(pattern: &Pattern, frame: &Frame) -> Stop {
         1 => stop.with_note(format!("byte {} differs", differing[0])),
         _ => stop.with_note(format!("bytes {} differ", differing.join(", "))),
     }
+}
+
+fn is_alternative(alternatives: &[Alternative], frame: &Frame) -> bool {
+    alternatives.iter().any(
+        |alternative| matches!(alternative, Alternative::Frame(other) if other.0.matches(frame)),
+    )
+}
+
+/// Says what else would have been accepted.
+fn with_alternatives(stop: Stop, alternatives: &[Alternative]) -> Stop {
+    alternatives
+        .iter()
+        .fold(stop, |stop, alternative| match alternative {
+            Alternative::Silence => stop.with_note("or silence"),
+            Alternative::Frame(frame) => stop.with_note(format!("or {}", frame.0)),
+        })
 }
 
 fn describe_pattern(pattern: &Pattern) -> String {

@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny};
 
-use crate::device::Feature;
+use crate::device::{Feature, FunctionCode};
 use crate::forms::{Either, OneOrMany, TwoForms};
 use crate::model::{
     Depth, Effect, Forbidden, Located, Need, Protocol, Query, Source, Step, StimulusName,
@@ -205,6 +205,8 @@ pub(crate) enum FullNeed {
     Stimulus(StimulusName),
     /// Objects that the device's dictionary must have.
     Object(OneOrMany<ObjectAddress>),
+    /// Modbus functions that the device must claim: `3`, `8/4`.
+    Function(OneOrMany<FunctionCode>),
 }
 
 impl TwoForms for Need {
@@ -219,6 +221,7 @@ impl TwoForms for Need {
         match need {
             FullNeed::Stimulus(stimulus) => Need::Stimulus(stimulus),
             FullNeed::Object(objects) => Need::Objects(objects.0),
+            FullNeed::Function(functions) => Need::Functions(functions.0),
         }
     }
 }

@@ -216,8 +216,8 @@ impl InsteadFile {
 }
 
 /// `17`, `0x11`, `11h`
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct WholeNumber(i128);
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct WholeNumber(pub(crate) i128);
 
 impl Text for WholeNumber {
     const EXPECTED: &'static str = "a whole number";

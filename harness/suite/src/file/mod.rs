@@ -5,6 +5,7 @@ mod can;
 mod case;
 mod device;
 mod modbus;
+mod registers;
 mod sdo;
 mod short;
 mod stimulate;
@@ -16,6 +17,7 @@ pub(crate) use can::*;
 pub(crate) use case::*;
 pub(crate) use device::*;
 pub(crate) use modbus::*;
+pub(crate) use registers::*;
 pub(crate) use sdo::*;
 pub(crate) use stimulate::*;
 

@@ -4,8 +4,8 @@
 use super::CaseTemplate;
 use crate::code;
 use crate::model::{
-    Case, DriveTarget, Effect, Located, ModbusRequest, Need, NmtAddress, NmtCommand, PowerAction,
-    Protocol, Step, Stimulate, StimulusName, SuiteHead,
+    Alternative, Case, DriveTarget, Effect, Located, ModbusRequest, Need, NmtAddress, NmtCommand,
+    PowerAction, Protocol, Step, Stimulate, StimulusName, SuiteHead,
 };
 use crate::problem::Problem;
 
@@ -33,6 +33,25 @@ pub(super) fn case(
         check_protocol(head.protocol, step, problems);
         check_effects(case, step, problems);
         check_needs(case, step, problems);
+        check_alternatives(step, problems);
+    }
+}
+
+/// What may come in the place of a frame comes with its identifier, for nothing else is looked at.
+fn check_alternatives(step: &Located<Step>, problems: &mut Vec<Problem>) {
+    let Step::Expect(expect) = &step.value else {
+        return;
+    };
+    let id = expect.frame.0.id();
+    let elsewhere =
+        |one: &Alternative| matches!(one, Alternative::Frame(frame) if frame.0.id() != id);
+    if expect.or.iter().any(elsewhere) {
+        let problem = Problem::new(
+            code::NEVER_MET,
+            "a frame with another identifier cannot come in the place of this one",
+            "expected the identifier of `frame` in `or`",
+        );
+        problems.push(*problem.at(step.at));
     }
 }
 

@@ -221,7 +221,35 @@ fn sample(query: &Query) -> Columns {
             ("-identifier", text("181")),
             ("-length", text("8")),
         ],
+        QueryKind::Register => sample_register(query),
+        QueryKind::Hole => vec![("", text("1")), ("-table", text("holding"))],
+        QueryKind::Function => vec![("", text("65"))],
     }
+}
+
+fn sample_register(query: &Query) -> Columns {
+    let text = |text: &str| text.to_owned();
+    let mut columns = vec![
+        ("", text("1")),
+        ("-name", text("a name")),
+        ("-table", text("holding")),
+        ("-type", text("u16")),
+        ("-access", text("rw")),
+        ("-count", text("1")),
+        ("-last", text("1")),
+    ];
+    columns.extend(query.has.iter().filter_map(|has| {
+        let suffix = match has {
+            Has::Default => "-default",
+            Has::Low => "-low",
+            Has::High => "-high",
+            Has::Below => "-below",
+            Has::Above => "-above",
+            Has::Codes | Has::Bits => return None,
+        };
+        Some((suffix, text("1")))
+    }));
+    columns
 }
 
 fn sample_object(query: &Query) -> Columns {
@@ -242,15 +270,16 @@ fn sample_object(query: &Query) -> Columns {
         ("-bits", "8".to_owned()),
         ("-mapping", "0x20000008".to_owned()),
     ];
-    columns.extend(query.has.iter().map(|has| {
+    columns.extend(query.has.iter().filter_map(|has| {
         let suffix = match has {
             Has::Default => "-default",
             Has::Low => "-low",
             Has::High => "-high",
             Has::Below => "-below",
             Has::Above => "-above",
+            Has::Codes | Has::Bits => return None,
         };
-        (suffix, number.to_owned())
+        Some((suffix, number.to_owned()))
     }));
     columns
 }

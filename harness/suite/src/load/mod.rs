@@ -8,6 +8,7 @@ mod check;
 mod checks;
 mod device;
 mod fill;
+mod registers;
 mod rows;
 mod suite;
 
@@ -19,6 +20,7 @@ pub use bench::load_bench;
 pub use catalogue::{load_catalogue, unknown_entries};
 pub use device::{load_device, unknown_checks};
 pub use fill::Columns;
+pub use registers::load_registers;
 
 use crate::expand::Environment;
 use crate::lines::Lines;

@@ -7,7 +7,9 @@ use serde::Deserialize;
 
 use crate::file::DecodeFile;
 use crate::forms::OneOrMany;
-use crate::read_with::{can_ids, decode_big_endian, decode_little_endian, optional_time, time};
+use crate::read_with::{
+    alternatives, can_ids, decode_big_endian, decode_little_endian, optional_time, time,
+};
 use crate::scalar::{
     BytePatternText, Bytes, CanId, Decimal, FrameText, ObjectAddress, PatternText, Time,
 };
@@ -26,6 +28,10 @@ pub struct Send {
 pub struct Expect {
     /// What must come.
     pub frame: PatternText,
+    /// What may come in its place: other frames with this identifier, or `silence`.
+    #[serde(default, deserialize_with = "alternatives")]
+    #[schemars(with = "OneOrMany<Alternative>")]
+    pub or: Vec<Alternative>,
     /// How long after the last send; else what the description promises.
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
@@ -37,6 +43,15 @@ pub struct Expect {
     /// The name of this check, for documented deviations.
     #[serde(default)]
     pub check: Option<String>,
+}
+
+/// What may come in the place of a frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Alternative {
+    /// `silence`: nothing.
+    Silence,
+    /// Another frame.
+    Frame(PatternText),
 }
 
 /// Expects that nothing arrives. Short form: the duration alone.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fieldproof_dictionary::registers::{Table, WriteEffect};
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::Deserialize;
 
@@ -41,6 +42,21 @@ pub struct Query {
     pub has: Vec<Has>,
     /// Into what they may be mapped.
     pub pdo: Option<MappableInto>,
+    /// The tables of the register map that they are in: one of these.
+    #[serde(deserialize_with = "one_or_many")]
+    #[schemars(with = "OneOrMany<TableWord>")]
+    pub table: Vec<TableWord>,
+    /// What writing them does: nothing but what is said here.
+    #[serde(deserialize_with = "one_or_many")]
+    #[schemars(with = "OneOrMany<EffectWord>")]
+    pub effect: Vec<EffectWord>,
+    /// So many of them must follow each other without a gap; the first is meant.
+    #[schemars(range(min = 1))]
+    pub row: Option<u16>,
+    /// Whether a value written survives power-off.
+    pub persists: Option<bool>,
+    /// Of functions: whether the device claims them.
+    pub claimed: Option<bool>,
     /// Those that are not meant: objects, indices and ranges of them.
     #[serde(deserialize_with = "one_or_many")]
     #[schemars(with = "OneOrMany<Except>")]
@@ -64,6 +80,77 @@ pub enum QueryKind {
     Tpdo,
     /// RPDOs.
     Rpdo,
+    /// Values of the register map: registers, coils, discrete inputs.
+    Register,
+    /// Addresses beside them that belong to none, in tables of which it is said that such are refused.
+    Hole,
+    /// Modbus functions, where it is said which the device has.
+    Function,
+}
+
+/// One of the four Modbus tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TableWord {
+    /// Bits that can be written.
+    Coils,
+    /// Bits that cannot.
+    DiscreteInputs,
+    /// Registers that can be written.
+    Holding,
+    /// Registers that cannot.
+    Input,
+}
+
+impl TableWord {
+    /// The table.
+    pub const fn table(self) -> Table {
+        match self {
+            TableWord::Coils => Table::Coils,
+            TableWord::DiscreteInputs => Table::DiscreteInputs,
+            TableWord::Holding => Table::Holding,
+            TableWord::Input => Table::Input,
+        }
+    }
+}
+
+/// What writing a register does, as a register map says it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum EffectWord {
+    /// It changes its value.
+    Writes,
+    /// It writes non-volatile memory.
+    Persists,
+    /// It changes the address or the line.
+    Readdresses,
+    /// Something may move.
+    Moves,
+    /// The device is reset, or others of its values are.
+    Resets,
+}
+
+impl EffectWord {
+    /// The effect.
+    pub const fn effect(self) -> WriteEffect {
+        match self {
+            EffectWord::Writes => WriteEffect::Writes,
+            EffectWord::Persists => WriteEffect::Persists,
+            EffectWord::Readdresses => WriteEffect::Readdresses,
+            EffectWord::Moves => WriteEffect::Moves,
+            EffectWord::Resets => WriteEffect::Resets,
+        }
+    }
+
+    const fn word(self) -> &'static str {
+        match self {
+            EffectWord::Writes => "writes",
+            EffectWord::Persists => "persists",
+            EffectWord::Readdresses => "readdresses",
+            EffectWord::Moves => "moves",
+            EffectWord::Resets => "resets",
+        }
+    }
 }
 
 /// A range of indices.
@@ -193,6 +280,10 @@ pub enum Has {
     Below,
     /// A highest value below the highest of the type.
     Above,
+    /// Meanings of single values.
+    Codes,
+    /// Meanings of single bits.
+    Bits,
 }
 
 /// Where an object may be mapped.
@@ -331,6 +422,13 @@ impl fmt::Display for Query {
             QueryKind::AbsentSubIndex => "object without a sub-index",
             QueryKind::Tpdo => "TPDO",
             QueryKind::Rpdo => "RPDO",
+            QueryKind::Register => "register",
+            QueryKind::Hole => "address that is said to be refused",
+            QueryKind::Function => match self.claimed {
+                Some(true) => "function that is claimed",
+                Some(false) => "function that is known not to be there",
+                None => "function that is known to be there or not",
+            },
         })?;
         let mut said: Vec<String> = Vec::new();
         let or = |words: Vec<String>| words.join(" or ");
@@ -355,6 +453,27 @@ impl fmt::Display for Query {
                 Has::High => "with a highest value",
                 Has::Below => "with a value below its lowest",
                 Has::Above => "with a value above its highest",
+                Has::Codes => "with meanings of single values",
+                Has::Bits => "with meanings of single bits",
+            }
+            .to_owned()
+        }));
+        if !self.table.is_empty() {
+            let words = self.table.iter().map(|it| it.table().name().to_owned());
+            said.push(format!("in the table {}", or(words.collect())));
+        }
+        if !self.effect.is_empty() {
+            let words = self.effect.iter().map(|it| it.word().to_owned());
+            said.push(format!(
+                "that is known to do nothing but {}",
+                or(words.collect())
+            ));
+        }
+        said.extend(self.row.map(|row| format!("in a row of {row}")));
+        said.extend(self.persists.map(|persists| {
+            match persists {
+                true => "that survives power-off",
+                false => "that does not survive power-off",
             }
             .to_owned()
         }));

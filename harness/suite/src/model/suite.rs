@@ -11,7 +11,7 @@ use crate::scalar::ObjectAddress;
 use crate::{Position, device};
 
 /// A thing and its place in the file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Located<T> {
     /// The thing.
     pub value: T,
@@ -118,6 +118,8 @@ pub enum Need {
     Stimulus(StimulusName),
     /// Objects of the device's dictionary: `object: "1029:01"`.
     Objects(Vec<ObjectAddress>),
+    /// Modbus functions that the description claims: `function: [3, 8/4]`.
+    Functions(Vec<device::FunctionCode>),
 }
 
 /// How thorough a run is.

@@ -6,6 +6,7 @@ use schemars::{Schema, json_schema};
 use super::text::read_as_text;
 use super::{BytePatternText, Bytes, FrameText, ObjectAddress, PatternText, Text};
 use crate::code;
+use crate::model::Alternative;
 use crate::problem::Wrong;
 use crate::read::ask;
 
@@ -106,6 +107,22 @@ impl Text for PatternText {
     }
 }
 
+impl Text for Alternative {
+    const ASK: &'static str = ask::HEX;
+    const EXPECTED: &'static str = "a frame such as \"581#43636000????????\", or silence";
+
+    fn parse(text: &str) -> Result<Alternative, Wrong> {
+        match text {
+            "silence" => Ok(Alternative::Silence),
+            _ => PatternText::parse(text).map(Alternative::Frame),
+        }
+    }
+
+    fn schema() -> Schema {
+        json_schema!({"type": "string", "pattern": "^([0-9A-Fa-f]{3,8}#|silence$)"})
+    }
+}
+
 impl Text for Bytes {
     const ASK: &'static str = ask::HEX;
     const EXPECTED: &'static str = "bytes such as \"20 03 00 00\"";
@@ -157,6 +174,7 @@ read_as_text!(
     CanId,
     FrameText,
     PatternText,
+    Alternative,
     Bytes,
     BytePatternText
 );

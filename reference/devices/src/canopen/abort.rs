@@ -17,6 +17,8 @@ impl Abort {
     pub(crate) const SEQUENCE_NUMBER: Abort = Abort(0x0504_0003);
     /// CRC error.
     pub(crate) const CRC: Abort = Abort(0x0504_0004);
+    /// Out of memory.
+    pub(crate) const OUT_OF_MEMORY: Abort = Abort(0x0504_0005);
     /// Attempt to read a write-only object.
     pub(crate) const WRITE_ONLY: Abort = Abort(0x0601_0001);
     /// Attempt to write a read-only object.
@@ -29,6 +31,8 @@ impl Abort {
     pub(crate) const MAPPING_TOO_LONG: Abort = Abort(0x0604_0042);
     /// Parameters that do not go together.
     pub(crate) const INCOMPATIBLE: Abort = Abort(0x0604_0043);
+    /// General internal incompatibility in the device.
+    pub(crate) const INTERNAL: Abort = Abort(0x0604_0047);
     /// Access failed due to a hardware error.
     pub(crate) const HARDWARE: Abort = Abort(0x0606_0000);
     /// The length of the service parameter does not match.
@@ -45,10 +49,20 @@ impl Abort {
     pub(crate) const TOO_HIGH: Abort = Abort(0x0609_0031);
     /// The value of the parameter is too low.
     pub(crate) const TOO_LOW: Abort = Abort(0x0609_0032);
+    /// The maximum is less than the minimum.
+    pub(crate) const MAXIMUM_BELOW_MINIMUM: Abort = Abort(0x0609_0036);
+    /// No resource: SDO connection.
+    pub(crate) const NO_CONNECTION: Abort = Abort(0x060A_0023);
+    /// General error.
+    pub(crate) const GENERAL: Abort = Abort(0x0800_0000);
     /// Data cannot be transferred or stored.
     pub(crate) const CANNOT_STORE: Abort = Abort(0x0800_0020);
     /// Data cannot be transferred or stored because of local control.
     pub(crate) const LOCAL_CONTROL: Abort = Abort(0x0800_0021);
     /// Data cannot be transferred or stored in the present device state.
     pub(crate) const DEVICE_STATE: Abort = Abort(0x0800_0022);
+    /// There is no object dictionary, or it cannot be generated.
+    pub(crate) const NO_DICTIONARY: Abort = Abort(0x0800_0023);
+    /// No data available.
+    pub(crate) const NO_DATA: Abort = Abort(0x0800_0024);
 }

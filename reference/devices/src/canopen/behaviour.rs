@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, ErrorControlSettings, NmtSettings, ObjectFault};
+use super::{BlockTransfer, ErrorControlSettings, NmtSettings, ObjectFault, OrdinaryTransfer};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -26,6 +26,10 @@ pub struct Behaviour {
     pub nmt: NmtSettings,
     /// Heartbeat and guarding.
     pub error_control: ErrorControlSettings,
+    /// Expedited and segmented SDO transfer.
+    pub sdo: OrdinaryTransfer,
+    /// Abort codes, and what is said in their place.
+    pub abort_codes: &'static [(u32, u32)],
     /// One value is not as the dictionary says.
     pub object_fault: Option<ObjectFault>,
 
@@ -45,8 +49,6 @@ pub struct Behaviour {
     pub unknown_command_refused: bool,
     /// A number travels in an expedited upload with its most significant byte first.
     pub upload_big_endian: bool,
-    /// The abort code for a sub-index that does not exist.
-    pub abort_no_sub_index: u32,
     /// What bytes 1 to 3 of an abort name.
     pub abort_multiplexer: AbortMultiplexer,
     /// The toggle bit alternates in the answers of a segmented upload.
@@ -154,6 +156,8 @@ pub enum AbortMultiplexer {
     OfRequest,
     /// The object at the next index.
     NextIndex,
+    /// What bytes 1 to 3 of the request name, though a segment names nothing there.
+    OfFrame,
 }
 
 /// Which NMT commands are obeyed beside those to the own node-ID.
@@ -208,6 +212,8 @@ impl Default for Behaviour {
             block: BlockTransfer::default(),
             nmt: NmtSettings::default(),
             error_control: ErrorControlSettings::default(),
+            sdo: OrdinaryTransfer::default(),
+            abort_codes: &[],
             object_fault: None,
             boot_up: true,
             heartbeat_can_be_stopped: true,
@@ -228,7 +234,6 @@ impl Default for Behaviour {
             lss_refused_index: None,
             lss_identity_big_endian: false,
             state_codes: StateCodes::STANDARD,
-            abort_no_sub_index: 0x0609_0011,
             abort_multiplexer: AbortMultiplexer::OfRequest,
             toggle_alternates: true,
             expedited_size_off_by_one: false,

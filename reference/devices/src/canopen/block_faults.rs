@@ -147,6 +147,22 @@ const BLOCK_ABORTED_WRITTEN: Fault = Fault {
     apply: |behaviour| behaviour.canopen.block.recovery = Recovery::AbortedWritten,
 };
 
+const BLOCK_ANSWER_DIRTY: Fault = Fault {
+    name: "block-answer-dirty",
+    breaks: "CiA 301: SDO block protocols, reserved bytes are 0",
+    words: "leaves bytes of the request in the reserved bytes of an acknowledge or an end",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.block.reserved_bytes_zero = false,
+};
+
+const BLOCK_STRAY_END_CONFIRMED: Fault = Fault {
+    name: "block-stray-end-confirmed",
+    breaks: "CiA 301: SDO abort code 05040001h",
+    words: "confirms the end of a block download that was never begun",
+    caught_by: "sdo",
+    apply: |behaviour| behaviour.canopen.block.stray_end_refused = false,
+};
+
 /// What a CANopen slave here can have that does SDO block transfers.
 pub(crate) const BLOCK: &[Fault] = &[
     BLOCK_SIZE_UNCHECKED,
@@ -167,4 +183,6 @@ pub(crate) const BLOCK: &[Fault] = &[
     BLOCK_END_NOT_CONFIRMED,
     BLOCK_ABANDONED_STAYS,
     BLOCK_ABORTED_WRITTEN,
+    BLOCK_ANSWER_DIRTY,
+    BLOCK_STRAY_END_CONFIRMED,
 ];

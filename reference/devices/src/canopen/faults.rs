@@ -8,7 +8,7 @@ pub(crate) const ABORT_CODE_WRONG: Fault = Fault {
     breaks: "CiA 301: SDO abort transfer, abort code 06090011h",
     words: "says that the object does not exist (06020000h) where only the sub-index does not",
     caught_by: "sdo",
-    apply: |behaviour| behaviour.canopen.abort_no_sub_index = 0x0602_0000,
+    apply: |behaviour| behaviour.canopen.abort_codes = &[(0x0609_0011, 0x0602_0000)],
 };
 
 pub(crate) const ABORT_NAMES_ANOTHER_OBJECT: Fault = Fault {

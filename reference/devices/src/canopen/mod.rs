@@ -26,6 +26,7 @@ mod pdo_rules;
 mod profile;
 mod queue;
 mod sdo;
+pub(crate) mod sdo_faults;
 pub(crate) mod service_faults;
 mod services;
 mod slave;
@@ -46,5 +47,8 @@ pub use nmt_settings::NmtSettings;
 pub use object_fault::{ObjectFault, ObjectFaultKind};
 pub(crate) use objects::Objects;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
-pub use sdo::{BlockTransfer, Recovery};
+pub use sdo::{
+    BlockTransfer, ClientAbort, OrdinaryTransfer, ReadOnly, Recovery, SecondInitiate, ShortRequest,
+    StraySegment,
+};
 pub(crate) use slave::{Factory, Slave};

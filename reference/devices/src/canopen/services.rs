@@ -1,4 +1,4 @@
-//! Services that only some slaves have, at a reset, and the second SDO server.
+//! Services that only some slaves have, at a reset, and the SDO servers beside the default one.
 
 use fieldproof_link::Instant;
 
@@ -7,8 +7,20 @@ use super::emergency::Errors;
 use super::pdo;
 use super::sdo::Server;
 use super::time::Clock;
-use super::write::SECOND_SDO_SERVER;
 use super::{Address, Slave};
+
+/// The parameters of the SDO servers beside the default one.
+pub(super) const ADDITIONAL_SERVERS: std::ops::RangeInclusive<u16> = 0x1201..=0x127F;
+
+/// An SDO server beside the default one.
+#[derive(Debug)]
+pub(super) struct AdditionalServer {
+    /// The index of its parameters.
+    index: u16,
+    /// The identifier of its requests, if it works.
+    request: Option<u16>,
+    server: Server,
+}
 
 impl Slave {
     /// What only some slaves have begins as after power-on.
@@ -21,31 +33,92 @@ impl Slave {
         self.switch = None;
         self.identified = 0;
         self.scanned = 0;
-        self.second_sdo = (None, Server::default());
+        self.servers.clear();
         if self.profile.consumes_heartbeats {
             self.consumers = Consumers::read(&self.objects, &self.behaviour, now);
         }
         if self.profile.complete {
-            self.reconfigure_second_sdo();
+            self.read_servers();
         }
     }
 
-    /// Reads 1201h again: the server works where both COB-IDs are valid.
-    pub(super) fn reconfigure_second_sdo(&mut self) {
+    /// Reads what servers there are; each works where both its COB-IDs are valid.
+    fn read_servers(&mut self) {
+        let parameters = self.objects.iter().map(|(address, _)| address);
+        let parameters = parameters.filter(|address| address.sub() == 0);
+        let indexes: Vec<u16> = parameters
+            .map(Address::index)
+            .filter(|index| ADDITIONAL_SERVERS.contains(index))
+            .collect();
+        self.servers = indexes
+            .into_iter()
+            .map(|index| self.read_server(index))
+            .collect();
+    }
+
+    fn read_server(&self, index: u16) -> AdditionalServer {
         let cob_id = |sub| {
-            let cob_id = self.objects.number(Address::new(SECOND_SDO_SERVER, sub))?;
-            let valid = cob_id & pdo::INVALID == 0;
+            let cob_id = self.objects.number(Address::new(index, sub))?;
+            let valid = cob_id & pdo::INVALID == 0 || !self.behaviour.sdo.servers_off;
             u16::try_from(cob_id & 0x7FF).ok().filter(|_| valid)
         };
         let (request, response) = (cob_id(1), cob_id(2));
-        let used = request.filter(|_| response.is_some());
-        self.second_sdo = (used, Server::answering_on(response));
+        AdditionalServer {
+            index,
+            request: request.filter(|_| response.is_some()),
+            server: Server::answering_on(response),
+        }
     }
 
-    /// Lets the second SDO server do what `work` says in the place of the first.
-    pub(super) fn with_second_sdo(&mut self, work: impl FnOnce(&mut Slave)) {
-        std::mem::swap(&mut self.sdo, &mut self.second_sdo.1);
+    /// The parameters at `index` have changed.
+    pub(super) fn reconfigure_server(&mut self, index: u16) {
+        if !self.behaviour.sdo.servers_follow {
+            return;
+        }
+        let read = self.read_server(index);
+        let mut servers = self.servers.iter_mut();
+        if let Some(server) = servers.find(|server| server.index == index) {
+            *server = read;
+        }
+    }
+
+    /// The place of the server that is asked under this identifier.
+    pub(super) fn server_of(&self, raw: u16) -> Option<usize> {
+        let mut servers = self.servers.iter();
+        servers.position(|server| server.request == Some(raw))
+    }
+
+    pub(super) fn servers_state(&self) -> impl Iterator<Item = (String, String)> {
+        let servers = self.servers.iter();
+        servers.map(|one| {
+            (
+                format!("sdo {:04X}", one.index),
+                one.server.name().to_owned(),
+            )
+        })
+    }
+
+    /// When one of them wants to be woken.
+    pub(super) fn servers_due(&self) -> Option<Instant> {
+        let servers = self.servers.iter();
+        servers.filter_map(|server| server.server.deadline()).min()
+    }
+
+    /// Lets another SDO server do what `work` says in the place of the default one.
+    pub(super) fn with_server(&mut self, place: usize, work: impl FnOnce(&mut Slave)) {
+        self.exchange_server(place);
         work(self);
-        std::mem::swap(&mut self.sdo, &mut self.second_sdo.1);
+        self.exchange_server(place);
+    }
+
+    fn exchange_server(&mut self, place: usize) {
+        let Some(other) = self.servers.get_mut(place) else {
+            return;
+        };
+        if self.behaviour.sdo.servers_apart {
+            std::mem::swap(&mut self.sdo, &mut other.server);
+        } else {
+            self.sdo.exchange_identifier(&mut other.server);
+        }
     }
 }

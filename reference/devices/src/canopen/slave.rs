@@ -17,6 +17,7 @@ use super::objects::Objects;
 use super::pdo::{self, Rpdo};
 use super::queue::{Queue, Service, identifier};
 use super::sdo::Server;
+use super::services::AdditionalServer;
 use super::sync::Sync;
 use super::time::Clock;
 use super::tpdo::{self, Tpdo};
@@ -54,8 +55,8 @@ pub(crate) struct Slave {
     pub(super) identified: u8,
     /// The part of the identity that a fastscan asks for.
     pub(super) scanned: u8,
-    /// The second SDO server, and the identifier of its requests.
-    pub(super) second_sdo: (Option<u16>, Server),
+    /// The SDO servers beside the default one.
+    pub(super) servers: Vec<AdditionalServer>,
     pub(super) rpdos: Vec<Rpdo>,
     pub(super) tpdos: Vec<Tpdo>,
     pub(super) bit_rate: u32,
@@ -106,7 +107,7 @@ impl Slave {
             switch: None,
             identified: 0,
             scanned: 0,
-            second_sdo: (None, Server::default()),
+            servers: Vec::new(),
             rpdos: Vec::new(),
             tpdos: Vec::new(),
             bit_rate: factory.bit_rate,
@@ -149,7 +150,8 @@ impl Slave {
             self.receive_lss(now, frame);
         } else if self.state == State::Initialising {
             // Without a node-ID there is LSS and nothing else.
-        } else if raw == 0x600 + node {
+        } else if raw == 0x600 + node || (raw == 0x601 + node && !self.behaviour.sdo.own_node_only)
+        {
             self.serve(now, frame, application);
         } else if raw == 0 {
             if let Some(command) = Command::of(frame, self.node, &self.behaviour) {
@@ -161,8 +163,8 @@ impl Slave {
             self.fetch_tpdo(now, raw);
         } else if self.sync.identifier == Some(raw) {
             self.receive_sync(now, frame, application);
-        } else if self.second_sdo.0 == Some(raw) {
-            self.with_second_sdo(|slave| slave.serve(now, frame, application));
+        } else if let Some(place) = self.server_of(raw) {
+            self.with_server(place, |slave| slave.serve(now, frame, application));
         } else if self.takes_time(raw) {
             self.receive_time(now, frame, application);
         } else if (0x701..=0x77F).contains(&raw) {
@@ -185,7 +187,7 @@ impl Slave {
             self.sync.next,
             self.tpdos_due(),
             self.sdo.deadline(),
-            self.second_sdo.1.deadline(),
+            self.servers_due(),
             self.rpdos_due(),
             self.consumers.due(),
             self.clock.next,
@@ -210,7 +212,9 @@ impl Slave {
         }
         self.wake_error_control(now);
         self.wake_sdo(now);
-        self.with_second_sdo(|slave| slave.wake_sdo(now));
+        for place in 0..self.servers.len() {
+            self.with_server(place, |slave| slave.wake_sdo(now));
+        }
         self.wake_consumers(now);
         self.wake_rpdos(now);
         self.produce_sync(now, application);
@@ -342,7 +346,7 @@ impl Slave {
         self.state = State::Initialising;
         self.lss = LssState::Waiting;
         self.queue.clear();
-        self.sdo = Server::default();
+        self.sdo.reset(&self.behaviour.sdo);
         self.sync = Sync::default();
         self.error_control = self.error_control.after_reset(&self.behaviour);
         self.initialise_services(now);

@@ -31,6 +31,7 @@ impl Slave {
             ("bit-rate saved", self.memory.bit_rate.to_string()),
         ];
         state.extend(facts.map(|(name, value)| (name.to_owned(), value)));
+        state.extend(self.servers_state());
         state
     }
 }

@@ -1,5 +1,8 @@
 //! What a right CANopen device may do otherwise.
 
+use std::time::Duration;
+
+use super::{SecondInitiate, ShortRequest, StraySegment};
 use crate::Variant;
 
 pub(crate) const NO_TPDO_ON_START: Variant = Variant {
@@ -36,6 +39,43 @@ pub(crate) const SMALL_BLOCKS: Variant = Variant {
         behaviour.canopen.block.block_size = 4;
         behaviour.canopen.block.size_given = false;
         behaviour.canopen.block.switches = false;
+    },
+};
+
+pub(crate) const GENERAL_ABORT_CODES: Variant = Variant {
+    name: "general-abort-codes",
+    words: "says that access, length or value are wrong, and not in which way: CiA 301 has a code for each",
+    apply: |behaviour| {
+        behaviour.canopen.abort_codes = &[
+            (0x0601_0001, 0x0601_0000),
+            (0x0601_0002, 0x0601_0000),
+            (0x0607_0012, 0x0607_0010),
+            (0x0607_0013, 0x0607_0010),
+            (0x0609_0031, 0x0609_0030),
+            (0x0609_0032, 0x0609_0030),
+            (0x0609_0036, 0x0609_0030),
+        ];
+    },
+};
+
+pub(crate) const CAREFUL_SDO: Variant = Variant {
+    name: "careful-sdo",
+    words: "gives up a segmented transfer after 500 ms, and when another request comes; refuses a short request",
+    apply: |behaviour| {
+        let sdo = &mut behaviour.canopen.sdo;
+        sdo.timeout = Some(Duration::from_millis(500));
+        sdo.second_initiate = SecondInitiate::Aborted;
+        sdo.short_request = ShortRequest::Refused;
+    },
+};
+
+pub(crate) const TERSE_SDO: Variant = Variant {
+    name: "terse-sdo",
+    words: "gives no size before a segmented upload, and does not answer a segment request with no transfer open",
+    apply: |behaviour| {
+        let sdo = &mut behaviour.canopen.sdo;
+        sdo.size_given = false;
+        sdo.stray_segment = StraySegment::Ignored;
     },
 };
 

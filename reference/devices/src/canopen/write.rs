@@ -7,14 +7,15 @@ use super::error_control::{GUARD_TIME, LIFE_TIME_FACTOR, PRODUCER_TIME};
 use super::memory;
 use super::pdo;
 use super::pdo_rules::{self, Parameter};
+use super::services::ADDITIONAL_SERVERS;
 use super::sync;
 use super::{Abort, Address, Answer, Application, Slave};
 use super::{cob_id, consumers, emergency, time};
 
 const STORE: u16 = 0x1010;
 const RESTORE: u16 = 0x1011;
-/// The parameter of the second SDO server.
-pub(super) const SECOND_SDO_SERVER: u16 = 0x1201;
+/// Software position limits of CiA 402: the lowest position at sub-index 1, the highest at 2.
+const POSITION_LIMITS: u16 = 0x607D;
 
 impl Slave {
     /// Writes `value` to the object at `slot`, for an SDO or a PDO; `false` if the application will say when it is done.
@@ -31,7 +32,7 @@ impl Slave {
             return Err(Abort::READ_ONLY);
         }
         let limits_checked = self.behaviour.limits_checked;
-        object.takes(value, limits_checked)?;
+        self.takes(address, object.takes(value, limits_checked), value)?;
         if let Some(twin) = self.twin(address).and_then(|twin| self.objects.get(twin)) {
             twin.takes(value, limits_checked)?;
         }
@@ -53,6 +54,28 @@ impl Slave {
             self.follow(now, address);
         }
         Ok(true)
+    }
+
+    /// What comes of a value that the object takes or refuses.
+    fn takes(
+        &mut self,
+        address: Address,
+        taken: Result<(), Abort>,
+        value: &[u8],
+    ) -> Result<(), Abort> {
+        let settings = &self.behaviour.sdo;
+        let checked = match taken {
+            Err(Abort::TOO_HIGH) => settings.high_limit_checked,
+            Err(Abort::TOO_LOW) => settings.low_limit_checked,
+            other => return other,
+        };
+        if !checked {
+            return Ok(());
+        }
+        if !settings.refused_not_written {
+            self.objects.set(address, value);
+        }
+        taken
     }
 
     fn twin(&self, address: Address) -> Option<Address> {
@@ -84,6 +107,10 @@ impl Slave {
                 self.objects.number(address).unwrap_or(0),
                 number,
             )?;
+        } else if index == consumers::CONSUMER_TIME && address.sub() != 0 {
+            consumers::check(&self.objects, address, number)?;
+        } else if index == POSITION_LIMITS {
+            self.check_position_limits(address, number)?;
         } else if index == ERROR_HISTORY {
             if number != 0 {
                 return Err(Abort::INVALID_VALUE);
@@ -115,6 +142,21 @@ impl Slave {
         Ok(true)
     }
 
+    /// The lowest position is not above the highest.
+    fn check_position_limits(&self, address: Address, value: u32) -> Result<(), Abort> {
+        let other = |sub| self.objects.number(Address::new(POSITION_LIMITS, sub));
+        let (low, high) = match address.sub() {
+            1 => (Some(value), other(2)),
+            _ => (other(1), Some(value)),
+        };
+        match (low, high) {
+            (Some(low), Some(high)) if low.cast_signed() > high.cast_signed() => {
+                Err(Abort::MAXIMUM_BELOW_MINIMUM)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The rules of services that not every slave has.
     fn service_permitted(&self, address: Address, value: u32) -> Result<(), Abort> {
         let number = |address| self.objects.number(address).unwrap_or(0);
@@ -123,7 +165,7 @@ impl Slave {
             _ if address == sync::OVERFLOW => sync::check_overflow(number(sync::CYCLE), value),
             _ if address == emergency::COB_ID => cob_id::check(number(address), value, valid),
             _ if address == time::COB_ID => cob_id::check(number(address), value, time::in_use),
-            (SECOND_SDO_SERVER, 1 | 2) => cob_id::check(number(address), value, valid),
+            (0x1201..=0x127F, 1 | 2) => cob_id::check(number(address), value, valid),
             _ => Ok(()),
         }
     }
@@ -191,8 +233,8 @@ impl Slave {
             self.reconfigure_time(now);
         } else if self.profile.consumes_heartbeats && index == consumers::CONSUMER_TIME {
             self.reconfigure_consumers(now);
-        } else if self.profile.complete && index == SECOND_SDO_SERVER {
-            self.reconfigure_second_sdo();
+        } else if self.profile.complete && ADDITIONAL_SERVERS.contains(&index) {
+            self.reconfigure_server(index);
         } else if Some(address) == self.profile.node_object {
             let node = self.objects.number(address).unwrap_or(1);
             self.memory.node = node.to_le_bytes()[0];

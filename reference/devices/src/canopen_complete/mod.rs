@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, error_control_faults, faults, nmt_faults, service_faults,
+    block_faults, error_control_faults, faults, nmt_faults, sdo_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -54,6 +54,11 @@ const FAULTS: [Fault;
         + error_control_faults::REST.len()
         + service_faults::ALL.len()
         + OWN_FAULTS.len()
+        + sdo_faults::ACCESS.len()
+        + sdo_faults::SEGMENTED.len()
+        + sdo_faults::ANY_LENGTH.len()
+        + sdo_faults::SERVERS.len()
+        + sdo_faults::REASONS.len()
         + block_faults::BLOCK.len()] = all_of(&[
     faults::COMMON,
     nmt_faults::COMMON,
@@ -62,6 +67,11 @@ const FAULTS: [Fault;
     error_control_faults::REST,
     service_faults::ALL,
     OWN_FAULTS,
+    sdo_faults::ACCESS,
+    sdo_faults::SEGMENTED,
+    sdo_faults::ANY_LENGTH,
+    sdo_faults::SERVERS,
+    sdo_faults::REASONS,
     block_faults::BLOCK,
 ]);
 
@@ -82,6 +92,9 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::GUARDED_BESIDE_HEARTBEAT,
         canopen::variants::GUARDED_BY_ONE_BYTE,
         canopen::variants::SLOW,
+        canopen::variants::GENERAL_ABORT_CODES,
+        canopen::variants::CAREFUL_SDO,
+        canopen::variants::TERSE_SDO,
         canopen::variants::SMALL_BLOCKS,
     ],
     build,

@@ -22,6 +22,14 @@ fn show(index: u16, objects: &mut Objects) {
 }
 
 impl Application for Values {
+    fn reading(&mut self, address: Address) -> Answer {
+        if address.index() < 0x2000 {
+            Answer::Now
+        } else {
+            self.conditions.answer_to_reading()
+        }
+    }
+
     fn writing(&mut self, address: Address, _: &[u8]) -> Answer {
         if address.index() < 0x2000 {
             Answer::Now

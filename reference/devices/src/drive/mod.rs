@@ -392,6 +392,14 @@ impl Drive {
 }
 
 impl Application for Drive {
+    fn reading(&mut self, address: Address) -> Answer {
+        if address.index() < 0x2000 {
+            Answer::Now
+        } else {
+            self.conditions.answer_to_reading()
+        }
+    }
+
     fn writing(&mut self, address: Address, value: &[u8]) -> Answer {
         if address.index() < 0x2000 {
             return Answer::Now;

@@ -9,8 +9,32 @@ use fieldproof_link::{
     Transmission,
 };
 
-use crate::modbus::{Behaviour, ModbusSlave, Registers as _};
+use crate::catalogue::{DeviceKind, Medium, PortKind, Settings, UnknownFault};
+use crate::modbus::{self, Behaviour, ModbusSlave, Registers as _};
 pub use registers::{InverterRegisters, LINE, STATION};
+
+/// What can be built.
+pub(crate) const KIND: DeviceKind = DeviceKind {
+    name: "teco-inverter",
+    title: "TECO A510 inverter",
+    ports: &[PortKind {
+        role: "serial",
+        medium: Medium::Serial(LINE),
+    }],
+    faults: modbus::faults::COMMON,
+    variants: &[modbus::variants::SLOW],
+    build,
+};
+
+fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
+    let behaviour = KIND.behaviour(crate::Behaviour::default(), settings)?;
+    let registers = InverterRegisters::at(settings.address.unwrap_or(STATION));
+    let slave = ModbusSlave::new(registers, behaviour.modbus, settings.seed);
+    Ok(Box::new(Inverter {
+        slave: slave.over(settings.framing),
+        powered: true,
+    }))
+}
 
 /// The inverter: one serial port, [`LINE`], station [`STATION`].
 #[derive(Debug, Clone)]
@@ -49,10 +73,9 @@ impl Inverter {
 
 impl Participant for Inverter {
     fn line(&self, _: usize) -> Line {
-        if self.powered {
-            self.slave.line()
-        } else {
-            Line::Off
+        match self.powered {
+            true => self.slave.line(),
+            false => Line::Off,
         }
     }
 
@@ -84,28 +107,33 @@ impl Participant for Inverter {
         stimulus: &Stimulus,
         _: &mut Outbox,
     ) -> Result<(), NotOffered> {
+        let registers = self.slave.registers_mut();
         match stimulus {
             Stimulus::Power { on } => {
+                if *on && !self.powered {
+                    *registers = InverterRegisters::at(registers.address());
+                    self.slave.restart();
+                }
                 self.powered = *on;
-                *self.slave.registers_mut() = InverterRegisters::default();
-                self.slave.restart();
                 Ok(())
             }
-            Stimulus::ProcessValue { name, value } => {
-                let registers = self.slave.registers_mut();
-                registers.set_process_value(name, *value)
-            }
+            Stimulus::ProcessValue { name, value } => registers.set_process_value(name, *value),
+            Stimulus::Setting { name, value } if name == "address" => registers.set_address(*value),
             _ => Err(NotOffered),
         }
     }
 
     fn offers(&self) -> Vec<StimulusKind> {
-        vec![StimulusKind::Power, StimulusKind::ProcessValue]
+        vec![
+            StimulusKind::Power,
+            StimulusKind::ProcessValue,
+            StimulusKind::Setting,
+        ]
     }
 
     /// Every register: `register 2501`, the value in decimal.
     fn state(&self) -> BTreeMap<String, String> {
-        self.slave.registers().state()
+        self.slave.state()
     }
 }
 

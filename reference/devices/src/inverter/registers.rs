@@ -48,22 +48,42 @@ const MODBUS_EXTERNAL_FAULT: u16 = 53;
 /// 2523h, and in 2524h while the motor runs. The bit *external fault* of 2501h stops it until *fault reset*.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InverterRegisters {
+    address: u8,
     values: [u16; 48],
 }
 
 impl Default for InverterRegisters {
     /// Stopped, ready, 5.00 Hz commanded.
     fn default() -> InverterRegisters {
-        let mut registers = InverterRegisters { values: [0; 48] };
+        InverterRegisters::at(STATION)
+    }
+}
+
+impl InverterRegisters {
+    /// Stopped, ready, 5.00 Hz commanded, with this address.
+    pub fn at(address: u8) -> InverterRegisters {
+        let mut registers = InverterRegisters {
+            address,
+            values: [0; 48],
+        };
         registers.set(FREQUENCY_COMMAND, DEFAULT_FREQUENCY);
         registers.set(FREQUENCY_COMMAND_MONITOR, DEFAULT_FREQUENCY);
         registers.set(STATE_SIGNAL, READY);
         registers.set(MODEL_CHECK, A510);
         registers
     }
-}
 
-impl InverterRegisters {
+    /// Sets the own address as parameter 09-00 would, `1..=247`.
+    ///
+    /// # Errors
+    /// [`NotOffered`]: any other address.
+    pub fn set_address(&mut self, address: i64) -> Result<(), NotOffered> {
+        let address = u8::try_from(address).ok();
+        let unicast = address.filter(|address| (1..=247).contains(address));
+        self.address = unicast.ok_or(NotOffered)?;
+        Ok(())
+    }
+
     /// Sets a register as if the inverter had come to hold it: `register 2520`, the number in hexadecimal.
     ///
     /// # Errors
@@ -124,7 +144,7 @@ impl InverterRegisters {
 
 impl Registers for InverterRegisters {
     fn address(&self) -> u8 {
-        STATION
+        self.address
     }
 
     fn serial(&self) -> SerialSettings {

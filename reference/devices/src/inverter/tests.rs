@@ -1,12 +1,12 @@
 use std::time::Duration;
 
 use fieldproof_dictionary::Access;
-use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_dictionary::registers::Table;
 use fieldproof_link::sim::Builder;
 use fieldproof_link::{Character, Lane};
 
 use super::*;
-use crate::modbus::script::Script;
+use crate::modbus::script::{Script, register_map};
 
 fn inverter() -> Script<InverterRegisters> {
     Script::new(InverterRegisters::default(), Behaviour::CONFORMING)
@@ -91,10 +91,10 @@ fn plays_as_a_participant() {
     let state = inverter.state();
     assert_eq!(state["register 2520"], "261");
     assert_eq!(state["register 2524"], "500");
-    assert_eq!(state.len(), 48);
-    let wrong = Stimulus::Setting {
-        name: "node".to_owned(),
-        value: 1,
+    assert_eq!(state.len(), 49);
+    let wrong = Stimulus::Condition {
+        name: "rain".to_owned(),
+        active: true,
     };
     let refused = inverter.stimulate(now, &wrong, &mut out);
     assert_eq!(refused, Err(NotOffered));
@@ -138,17 +138,13 @@ fn plays_on_a_simulated_line() {
 /// The inverter and its description come from the same manual by two hands.
 #[test]
 fn inverter_is_what_its_description_claims() {
-    let text = include_str!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../fixtures/devices/teco-jn5-cm-can/teco-a510.registers"
-    ));
     let registers = InverterRegisters::default();
-    let map = RegisterMap::parse(text).unwrap();
-    for claimed in map.registers() {
+    let map = register_map("teco-inverter");
+    for claimed in map.table(Table::Holding).unwrap().registers() {
         let register = claimed.address;
         let read = registers.read(register, &Behaviour::CONFORMING);
         assert!(read.is_ok(), "{register:04X}");
-        let highest = u16::try_from(claimed.high).unwrap();
+        let highest = u16::try_from(claimed.highest()).unwrap();
         let written = registers.check_write(register, highest).is_ok();
         assert_eq!(
             written,

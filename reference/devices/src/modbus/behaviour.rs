@@ -30,6 +30,17 @@ pub enum EchoedValue {
     OneMore,
 }
 
+/// What a slave keeps of a frame that was none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Remains {
+    /// The bytes of one that was too short: they stand before the next.
+    OfRunts,
+    /// What came before a long silence: the rest is put to it.
+    OfTornFrames,
+    /// The first bytes of one that was too long, as if it had ended there.
+    OfLongFrames,
+}
+
 /// From where the answer to a change of the own address comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AddressChangeReply {
@@ -114,6 +125,70 @@ pub struct Behaviour {
     pub most_written: usize,
     /// Whether registers that hold a speed carry its sign.
     pub speed_sign: SpeedSign,
+    /// Whether only the first byte of a CRC is looked at.
+    pub crc_half_checked: bool,
+    /// Whether characters with a wrong parity bit are taken.
+    pub parity_ignored: bool,
+    /// What is kept of a frame that was none.
+    pub frame_remains: Option<Remains>,
+    /// Whether nothing is done for a broadcast.
+    pub broadcast_ignored: bool,
+    /// Whether a function that there is not is met with silence.
+    pub unknown_function_silent: bool,
+    /// Whether an exception is one byte longer than it is.
+    pub exception_with_function_data: bool,
+    /// Whether none of something may be asked for.
+    pub zero_quantity_allowed: bool,
+    /// Whether more than the limit of the function may be asked for.
+    pub excess_quantity_allowed: bool,
+    /// Whether the addresses are looked at before their number.
+    pub address_before_quantity: bool,
+    /// Whether address 65535 is followed by address 0.
+    pub addresses_wrap: bool,
+    /// Whether what there is not reads as 0.
+    pub holes_answered: bool,
+    /// Whether the byte count of a request may be anything.
+    pub byte_count_unchecked: bool,
+    /// Whether values outside their limits are taken.
+    pub limits_ignored: bool,
+    /// Whether a write of a read-only register is confirmed, and not done.
+    pub read_only_confirmed: bool,
+    /// Whether a write of several stops where it is refused, and has done what was before.
+    pub writes_until_refused: bool,
+    /// Whether inputs are read from the tables that can be written.
+    pub tables_mixed: bool,
+    /// Whether the first of eight bits is the highest of its byte.
+    pub bit_order_reversed: bool,
+    /// Whether the bits after the last are ones.
+    pub padding_bits_set: bool,
+    /// Whether a coil takes other values than FF00h and 0000h.
+    pub coil_value_unchecked: bool,
+    /// Whether the OR mask of 16h sets bits that the AND mask keeps.
+    pub masks_simply_joined: bool,
+    /// Whether 17h reads before it writes.
+    pub reads_before_writes: bool,
+    /// Whether the loopback of 08h is answered with its first two bytes.
+    pub loopback_cut: bool,
+    /// Whether spoilt messages are not counted.
+    pub communication_errors_uncounted: bool,
+    /// Whether counters stay when they are cleared.
+    pub counters_not_cleared: bool,
+    /// Whether fetching the event counter counts.
+    pub fetches_count_as_events: bool,
+    /// Whether a slave that only listens does and answers.
+    pub listen_only_answered: bool,
+    /// Whether a restart does not end listening.
+    pub restart_keeps_listening: bool,
+    /// Whether it says of itself that it does not run.
+    pub run_indicator_off: bool,
+    /// Whether the byte count of 18h leaves its own count out.
+    pub fifo_count_missing_in_bytes: bool,
+    /// Whether every category of the identification has all objects.
+    pub categories_ignored: bool,
+    /// Whether an object of the identification that there is not is answered.
+    pub unknown_object_answered: bool,
+    /// Whether it is not said that more objects follow.
+    pub more_follows_missing: bool,
 }
 
 impl Behaviour {
@@ -134,6 +209,38 @@ impl Behaviour {
         echoed_value: EchoedValue::Written,
         most_written: usize::MAX,
         speed_sign: SpeedSign::Kept,
+        crc_half_checked: false,
+        parity_ignored: false,
+        frame_remains: None,
+        broadcast_ignored: false,
+        unknown_function_silent: false,
+        exception_with_function_data: false,
+        zero_quantity_allowed: false,
+        excess_quantity_allowed: false,
+        address_before_quantity: false,
+        addresses_wrap: false,
+        holes_answered: false,
+        byte_count_unchecked: false,
+        limits_ignored: false,
+        read_only_confirmed: false,
+        writes_until_refused: false,
+        tables_mixed: false,
+        bit_order_reversed: false,
+        padding_bits_set: false,
+        coil_value_unchecked: false,
+        masks_simply_joined: false,
+        reads_before_writes: false,
+        loopback_cut: false,
+        communication_errors_uncounted: false,
+        counters_not_cleared: false,
+        fetches_count_as_events: false,
+        listen_only_answered: false,
+        restart_keeps_listening: false,
+        run_indicator_off: false,
+        fifo_count_missing_in_bytes: false,
+        categories_ignored: false,
+        unknown_object_answered: false,
+        more_follows_missing: false,
     };
 }
 

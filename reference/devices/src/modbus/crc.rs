@@ -31,6 +31,11 @@ pub fn split(frame: &[u8]) -> Option<(&[u8], bool)> {
     Some((body, u16::from_le_bytes(*check) == crc16(body)))
 }
 
+/// Whether the first byte of the check is right, `body` being what it is of.
+pub(crate) fn half_right(body: &[u8], frame: &[u8]) -> bool {
+    frame.get(body.len()) == crc16(body).to_le_bytes().first()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

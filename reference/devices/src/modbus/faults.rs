@@ -1,7 +1,9 @@
 //! The faults that a Modbus side can be given, each one departure from one clause.
 
+use super::function_faults::{FUNCTIONS, LINE, REFUSALS};
 use super::{AddressChangeReply, ByteCount, CrcOrder, EchoedValue, SpeedSign};
 use crate::Fault;
+use crate::catalogue::all_of;
 
 /// The CRC of an answer, its bytes in the wrong order.
 pub const CRC_BYTES_SWAPPED: Fault = Fault {
@@ -159,6 +161,11 @@ pub const FAULTS: &[Fault] = &[
     ADDRESS_CHANGE_ANSWERED_FROM_OLD,
     SPEED_SIGN_LOST,
 ];
+
+/// What a slave can have that has every function.
+pub(crate) const COMPLETE: [Fault;
+    COMMON.len() + 1 + LINE.len() + REFUSALS.len() + FUNCTIONS.len()] =
+    all_of(&[COMMON, &[WRITE_MULTIPLE_FORGETS], LINE, REFUSALS, FUNCTIONS]);
 
 /// What every Modbus slave here can have.
 pub(crate) const COMMON: &[Fault] = &[

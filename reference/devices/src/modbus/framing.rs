@@ -4,8 +4,13 @@ use std::time::Duration;
 
 use fieldproof_link::{Character, Instant, SerialSettings};
 
+use super::Remains;
+
 /// The longest frame: address, 253 bytes of PDU, CRC.
 pub const LONGEST_FRAME: usize = 256;
+
+/// The shortest frame: address, function, CRC.
+const SHORTEST_FRAME: usize = 4;
 
 /// Instants are whole nanoseconds and so are the times of characters: sums of them may differ by a few.
 const ROUNDING: Duration = Duration::from_nanos(20);
@@ -29,6 +34,9 @@ pub struct Received {
 pub struct Framer {
     line: SerialSettings,
     end_silence: Duration,
+    remains: Option<Remains>,
+    /// What remains of a frame that was too short.
+    runt: Vec<u8>,
     collected: Option<Received>,
     finished: Option<(Instant, Received)>,
 }
@@ -39,6 +47,8 @@ impl Framer {
         Framer {
             line,
             end_silence: line.silence_3_5(),
+            remains: None,
+            runt: Vec::new(),
             collected: None,
             finished: None,
         }
@@ -52,6 +62,14 @@ impl Framer {
         }
     }
 
+    /// One that keeps something of frames that are none.
+    pub fn keeping(self, remains: Remains) -> Framer {
+        Framer {
+            remains: Some(remains),
+            ..self
+        }
+    }
+
     /// `character` ended at `now`.
     pub fn receive(&mut self, now: Instant, character: Character) {
         let gap = self
@@ -61,7 +79,8 @@ impl Framer {
         if gap.is_some_and(|gap| gap >= self.end_silence) {
             self.finished = self.collected.take().map(|received| (now, received));
         }
-        let too_long = gap.is_some_and(|gap| gap > self.line.silence_1_5() + 2 * ROUNDING);
+        let torn = gap.is_some_and(|gap| gap > self.line.silence_1_5() + 2 * ROUNDING);
+        let too_long = torn && self.remains != Some(Remains::OfTornFrames);
         let collected = self.collected.get_or_insert_with(|| Received {
             bytes: Vec::new(),
             flawed: false,
@@ -72,7 +91,7 @@ impl Framer {
         if collected.bytes.len() < LONGEST_FRAME {
             collected.bytes.push(character.byte);
         } else {
-            collected.flawed = true;
+            collected.flawed |= self.remains != Some(Remains::OfLongFrames);
         }
     }
 
@@ -88,12 +107,23 @@ impl Framer {
     /// What has ended by `now`, if anything.
     pub fn wake(&mut self, now: Instant) -> Option<Received> {
         if let Some((_, received)) = self.finished.take() {
-            return Some(received);
+            return Some(received).map(|received| self.with_remains(received));
         }
         if self.wake_at().is_some_and(|at| at <= now) {
-            return self.collected.take();
+            let received = self.collected.take();
+            return received.map(|received| self.with_remains(received));
         }
         None
+    }
+
+    fn with_remains(&mut self, mut received: Received) -> Received {
+        if self.remains == Some(Remains::OfRunts) {
+            received.bytes.splice(0..0, self.runt.drain(..));
+            if received.bytes.len() < SHORTEST_FRAME {
+                self.runt.clone_from(&received.bytes);
+            }
+        }
+        received
     }
 
     /// Forgets what it has collected.

@@ -4,21 +4,30 @@
 //! the caller was told to wake at.
 
 pub mod behaviour;
+mod counters;
 pub mod crc;
+mod exception;
 pub mod faults;
 pub mod framing;
+mod function_faults;
+mod functions;
 pub mod master;
+mod registers;
 #[cfg(test)]
 pub(crate) mod script;
 pub mod slave;
 pub mod stream;
+pub(crate) mod variants;
 
 pub use behaviour::{
-    AddressChangeReply, Behaviour, ByteCount, CrcOrder, EchoedValue, ExceptionCodes, SpeedSign,
+    AddressChangeReply, Behaviour, ByteCount, CrcOrder, EchoedValue, ExceptionCodes, Remains,
+    SpeedSign,
 };
+pub use exception::Exception;
 pub use faults::FAULTS;
 pub use master::{Failure, ModbusMaster, Reply, RequestId};
-pub use slave::{Command, Exception, ModbusSlave, Registers};
+pub use registers::{Command, Registers};
+pub use slave::ModbusSlave;
 
 #[cfg(test)]
 mod tests;

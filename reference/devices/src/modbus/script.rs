@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
+use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_link::{Character, Instant, Line, SerialSettings};
+use fieldproof_suite::SourceFile;
 
 use super::{Behaviour, ModbusSlave, Registers, crc};
 
@@ -112,6 +114,18 @@ impl<R: Registers> Script<R> {
         });
         assert_eq!(came.unwrap_or_default(), expected, "answer to {request}");
     }
+}
+
+/// What the description of a device claims to have.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "a test of the files of the project"
+)]
+pub(crate) fn register_map(device: &str) -> RegisterMap {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/devices");
+    let path = format!("{folder}/{device}/registers.yaml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    fieldproof_suite::load_registers(&SourceFile { path, text }).unwrap()
 }
 
 /// The bytes of a text like `01 03`.

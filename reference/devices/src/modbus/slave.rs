@@ -5,81 +5,14 @@ use std::time::Duration;
 
 use fieldproof_link::{Character, Framing, Instant, Line, SerialSettings};
 
+use super::counters::Counters;
 use super::crc;
 use super::framing::{Framer, Received};
+use super::functions::{Outcome, Service};
 use super::stream::{Request, StreamFramer};
-use super::{Behaviour, ByteCount, EchoedValue};
+use super::{Behaviour, Command, Exception, Registers};
 
-const READ_HOLDING: u8 = 0x03;
-const WRITE_SINGLE: u8 = 0x06;
-const WRITE_MULTIPLE: u8 = 0x10;
 const BROADCAST: u8 = 0;
-/// Most registers of one 03h.
-const MOST_READ: u16 = 125;
-/// Most registers of one 10h.
-const MOST_WRITTEN: u16 = 123;
-
-/// Why a request is refused. The code that says so is a setting: [`super::ExceptionCodes`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exception {
-    /// The function is not supported.
-    IllegalFunction,
-    /// The register does not exist or does not allow the access.
-    IllegalDataAddress,
-    /// The value is out of range, or the request is not built as its function has it.
-    IllegalDataValue,
-    /// Busy.
-    DeviceBusy,
-}
-
-/// What a device makes of a request that is not one of the ordinary functions on its own address.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Command {
-    /// It did what was asked, or not, and stays silent.
-    Silent,
-    /// It answers this: address, function and data, without CRC.
-    Answer(Vec<u8>),
-}
-
-/// What a slave serves: the registers of one device, by their address on the wire (the first is 0).
-pub trait Registers {
-    /// The own address, 1 to 247.
-    fn address(&self) -> u8;
-
-    /// How the line is to be set.
-    fn serial(&self) -> SerialSettings;
-
-    /// The content of a register.
-    ///
-    /// # Errors
-    /// [`Exception::IllegalDataAddress`]: there is none, or it cannot be read.
-    fn read(&self, register: u16, behaviour: &Behaviour) -> Result<u16, Exception>;
-
-    /// Whether a register takes a value.
-    ///
-    /// # Errors
-    /// [`Exception::IllegalDataAddress`]: there is none, or it cannot be written.
-    /// [`Exception::IllegalDataValue`]: not this value.
-    fn check_write(&self, register: u16, value: u16) -> Result<(), Exception>;
-
-    /// Writes a value that [`Registers::check_write`] allowed.
-    fn write(&mut self, register: u16, value: u16);
-
-    /// Takes a whole request (address, function, data; its CRC was right) before the address is looked at; `None` if it
-    /// is an ordinary one.
-    fn command(&mut self, request: &[u8], behaviour: &Behaviour) -> Option<Command> {
-        let _ = (request, behaviour);
-        None
-    }
-
-    /// From the end of the silence after a request to the answer, jitter apart.
-    fn processing_delay(&self, behaviour: &Behaviour) -> Duration {
-        behaviour.processing_delay
-    }
-
-    /// What a case could have left changed: names and values.
-    fn state(&self) -> BTreeMap<String, String>;
-}
 
 /// A slave on one serial port. The device that owns the port passes on what arrives, wakes it when it asks, and sends
 /// what it gives.
@@ -87,6 +20,7 @@ pub trait Registers {
 pub struct ModbusSlave<R> {
     registers: R,
     behaviour: Behaviour,
+    counters: Counters,
     line: SerialSettings,
     framer: Framer,
     /// In place of the line and its framer, if it is at the end of a connection.
@@ -104,6 +38,7 @@ impl<R: Registers> ModbusSlave<R> {
             framer: framer(line, &behaviour),
             registers,
             behaviour,
+            counters: Counters::default(),
             line,
             stream: None,
             chance: fastrand::Rng::with_seed(seed),
@@ -138,11 +73,20 @@ impl<R: Registers> ModbusSlave<R> {
         }
     }
 
+    /// What a case could have left changed, the line apart.
+    pub fn state(&self) -> BTreeMap<String, String> {
+        let mut state = self.registers.state();
+        let listens = self.counters.listens_only;
+        state.insert("modbus listens only".to_owned(), listens.to_string());
+        state
+    }
+
     /// Forgets what it was receiving or about to send, and sets its line as the registers say: after power-on, or when a
     /// switch was set.
     pub fn restart(&mut self) {
         self.reply = None;
         self.sending_until = None;
+        self.counters = Counters::default();
         self.line = self.registers.serial();
         self.framer = framer(self.line, &self.behaviour);
         self.stream = self.stream.take().map(|it| StreamFramer::new(it.framing()));
@@ -156,7 +100,7 @@ impl<R: Registers> ModbusSlave<R> {
             return;
         }
         let heard = Character {
-            spoilt: character.spoilt || self.is_busy(now),
+            spoilt: character.spoilt && !self.behaviour.parity_ignored || self.is_busy(now),
             ..character
         };
         self.framer.receive(now, heard);
@@ -231,10 +175,21 @@ impl<R: Registers> ModbusSlave<R> {
 
     /// Does what a frame asks; the whole answer, if there is one.
     fn answer(&mut self, received: &Received) -> Option<Vec<u8>> {
-        let (request, intact) = crc::split(&received.bytes)?;
-        if received.flawed || !(intact || self.behaviour.stale_crc_accepted) {
-            return None;
+        let whole = crc::split(&received.bytes).filter(|(request, _)| !request.is_empty());
+        let intact = whole.is_some_and(|(request, intact)| {
+            intact || self.behaviour.crc_half_checked && crc::half_right(request, &received.bytes)
+        });
+        if received.flawed || !intact {
+            if !self.behaviour.communication_errors_uncounted {
+                self.counters.spoilt();
+            }
+            if received.flawed || !self.behaviour.stale_crc_accepted {
+                return None;
+            }
+        } else {
+            self.counters.heard();
         }
+        let (request, _) = whole?;
         let body = self.answer_body(request)?;
         Some(crc::with_crc(body, self.behaviour.crc_order))
     }
@@ -261,8 +216,11 @@ impl<R: Registers> ModbusSlave<R> {
     fn ordinary_answer(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let (&address, pdu) = request.split_first()?;
         let own_address = self.registers.address();
-        let others = self.behaviour.other_addresses_answered;
-        if address != BROADCAST && address != own_address && !others {
+        // There is no broadcast on a connection of its own, and no other slave behind it.
+        let over_tcp = self.is_over_tcp();
+        let broadcast = address == BROADCAST && !over_tcp;
+        let others = self.behaviour.other_addresses_answered || over_tcp;
+        if !broadcast && address != own_address && !others {
             return None;
         }
         let (function, data) = match pdu.split_first() {
@@ -270,11 +228,27 @@ impl<R: Registers> ModbusSlave<R> {
             None if self.behaviour.bare_address_answered => (0, pdu),
             None => return None,
         };
-        let outcome = self.execute(function, data);
-        if address == BROADCAST && !self.behaviour.broadcast_answered {
+        self.counters.received(broadcast);
+        if broadcast && self.behaviour.broadcast_ignored {
             return None;
         }
-        let mut answer = vec![own_address];
+        let unit = if over_tcp { address } else { own_address };
+        let outcome = match self.service().serve(function, data) {
+            Outcome::Answer(outcome) => outcome,
+            Outcome::Silence => return None,
+        };
+        if broadcast && !self.behaviour.broadcast_answered {
+            return None;
+        }
+        let is_unknown = outcome == Err(Exception::IllegalFunction);
+        if is_unknown && self.behaviour.unknown_function_silent {
+            return None;
+        }
+        Some(self.frame(unit, function, outcome))
+    }
+
+    fn frame(&self, unit: u8, function: u8, outcome: Result<Vec<u8>, Exception>) -> Vec<u8> {
+        let mut answer = vec![unit];
         match outcome {
             Ok(data) => {
                 answer.push(function);
@@ -282,122 +256,40 @@ impl<R: Registers> ModbusSlave<R> {
             }
             Err(exception) => {
                 let bit = u8::from(self.behaviour.exception_bit_set) << 7;
-                answer.extend([function | bit, self.code(exception)]);
+                answer.extend([
+                    function | bit,
+                    exception.code(&self.behaviour.exception_codes),
+                ]);
+                if self.behaviour.exception_with_function_data {
+                    answer.push(0);
+                }
             }
         }
-        Some(answer)
+        answer
     }
 
-    fn code(&self, exception: Exception) -> u8 {
-        let codes = self.behaviour.exception_codes;
-        match exception {
-            Exception::IllegalFunction => codes.illegal_function,
-            Exception::IllegalDataAddress => codes.illegal_data_address,
-            Exception::IllegalDataValue => codes.illegal_data_value,
-            Exception::DeviceBusy => codes.device_busy,
-        }
-    }
-
-    /// The data of the answer, after the function code.
-    fn execute(&mut self, function: u8, data: &[u8]) -> Result<Vec<u8>, Exception> {
-        match function {
-            READ_HOLDING => self.read_holding(data),
-            WRITE_SINGLE => self.write_single(data),
-            WRITE_MULTIPLE => self.write_multiple(data),
-            _ => Err(Exception::IllegalFunction),
+    fn service(&mut self) -> Service<'_, R> {
+        Service {
+            over_tcp: self.is_over_tcp(),
+            registers: &mut self.registers,
+            behaviour: &self.behaviour,
+            counters: &mut self.counters,
         }
     }
 
-    /// Start and quantity; answered by a byte count and the registers.
-    fn read_holding(&self, data: &[u8]) -> Result<Vec<u8>, Exception> {
-        let &[start_high, start_low, quantity_high, quantity_low] = data else {
-            return Err(Exception::IllegalDataValue);
-        };
-        let quantity = u16::from_be_bytes([quantity_high, quantity_low]);
-        if !(1..=MOST_READ).contains(&quantity) {
-            return Err(Exception::IllegalDataValue);
-        }
-        let start = u16::from_be_bytes([start_high, start_low]);
-        let last = last_register(start, quantity)?;
-        let count = match self.behaviour.byte_count {
-            ByteCount::Bytes => 2 * quantity,
-            ByteCount::Registers => quantity,
-        };
-        // At most 250, so the low byte is all of it.
-        let mut answer = vec![count.to_be_bytes()[1]];
-        for register in start..=last {
-            answer.extend(
-                self.registers
-                    .read(register, &self.behaviour)?
-                    .to_be_bytes(),
-            );
-        }
-        Ok(answer)
-    }
-
-    /// Register and value; answered by the same.
-    fn write_single(&mut self, data: &[u8]) -> Result<Vec<u8>, Exception> {
-        let &[register_high, register_low, value_high, value_low] = data else {
-            return Err(Exception::IllegalDataValue);
-        };
-        let register = u16::from_be_bytes([register_high, register_low]);
-        let value = u16::from_be_bytes([value_high, value_low]);
-        self.registers.check_write(register, value)?;
-        self.registers.write(register, value);
-        let echoed = match self.behaviour.echoed_value {
-            EchoedValue::Written => value,
-            EchoedValue::OneMore => value.wrapping_add(1),
-        };
-        Ok([register.to_be_bytes(), echoed.to_be_bytes()].concat())
-    }
-
-    /// Start, quantity, byte count, values; answered by start and quantity. Writes all or none.
-    fn write_multiple(&mut self, data: &[u8]) -> Result<Vec<u8>, Exception> {
-        let Some((
-            &[
-                start_high,
-                start_low,
-                quantity_high,
-                quantity_low,
-                byte_count,
-            ],
-            bytes,
-        )) = data.split_first_chunk::<5>()
-        else {
-            return Err(Exception::IllegalDataValue);
-        };
-        let quantity = u16::from_be_bytes([quantity_high, quantity_low]);
-        if !(1..=MOST_WRITTEN).contains(&quantity)
-            || u16::from(byte_count) != 2 * quantity
-            || bytes.len() != usize::from(byte_count)
-        {
-            return Err(Exception::IllegalDataValue);
-        }
-        let start = u16::from_be_bytes([start_high, start_low]);
-        let last = last_register(start, quantity)?;
-        let (pairs, _) = bytes.as_chunks::<2>();
-        let values = pairs.iter().map(|pair| u16::from_be_bytes(*pair));
-        for (register, value) in (start..=last).zip(values.clone()) {
-            self.registers.check_write(register, value)?;
-        }
-        let written = (start..=last).zip(values).take(self.behaviour.most_written);
-        for (register, value) in written {
-            self.registers.write(register, value);
-        }
-        Ok([start.to_be_bytes(), quantity.to_be_bytes()].concat())
+    fn is_over_tcp(&self) -> bool {
+        let framing = self.stream.as_ref().map(StreamFramer::framing);
+        framing == Some(Framing::ModbusTcp)
     }
 }
 
 fn framer(line: SerialSettings, behaviour: &Behaviour) -> Framer {
-    if behaviour.replies_before_silence {
-        Framer::hasty(line)
-    } else {
-        Framer::new(line)
+    let framer = match behaviour.replies_before_silence {
+        true => Framer::hasty(line),
+        false => Framer::new(line),
+    };
+    match behaviour.frame_remains {
+        Some(remains) => framer.keeping(remains),
+        None => framer,
     }
-}
-
-fn last_register(start: u16, quantity: u16) -> Result<u16, Exception> {
-    start
-        .checked_add(quantity.saturating_sub(1))
-        .ok_or(Exception::IllegalDataAddress)
 }

@@ -7,4 +7,4 @@ mod compare;
 mod table;
 
 pub use compare::{Difference, compare};
-pub use table::{Row, Size, Status, Table};
+pub use table::{Row, Size, Status, Table, TableError};

@@ -24,8 +24,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::registers::TableError;
 use crate::{Access, DataType};
+
+/// A line of a table that cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {text}")]
+pub struct TableError {
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub text: String,
+}
 
 /// The entries that a manual prints, in index order.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -3,7 +3,7 @@
 use fieldproof_link::Instant;
 
 use super::block::END;
-use super::{LONGEST_VALUE, Refusal, SEGMENT, Transfer, is_mapping_entry};
+use super::{LONGEST_VALUE, ReadOnly, Refusal, SEGMENT, StraySegment, Transfer, is_mapping_entry};
 use crate::canopen::{Abort, Address, Application, Slave};
 
 impl Slave {
@@ -24,9 +24,16 @@ impl Slave {
         self.forget_segments();
         self.sdo.transfer = Transfer::None;
         let sized = command & 0x01 != 0;
+        if !sized && !self.behaviour.sdo.unsized_taken {
+            return Err(refused(Abort::UNKNOWN_COMMAND));
+        }
         if command & 0x02 == 0 {
             let size = sized.then(|| u32::from_le_bytes(data) as usize);
-            self.check_download(address, size).map_err(refused)?;
+            let (_, fixed) = self.check_download(address, size).map_err(refused)?;
+            let small = fixed.is_some_and(|fixed| fixed <= 4);
+            if small && !self.behaviour.sdo.small_segmented_taken {
+                return Err(refused(Abort::UNKNOWN_COMMAND));
+            }
             self.sdo.buffer.clear();
             self.sdo.transfer = Transfer::Download {
                 address,
@@ -58,9 +65,12 @@ impl Slave {
         size: Option<usize>,
     ) -> Result<(usize, Option<usize>), Abort> {
         let slot = self.objects.find(address)?;
-        let object = self.objects.at(slot).filter(|object| object.writable);
+        let settings = &self.behaviour.sdo;
+        let refuses = settings.read_only == ReadOnly::Refused;
+        let object = self.objects.at(slot);
+        let object = object.filter(|object| object.writable || !refuses);
         let fixed = object.ok_or(Abort::READ_ONLY)?.size();
-        match size {
+        match size.filter(|_| settings.length_checked) {
             Some(size) if size > fixed.unwrap_or(LONGEST_VALUE) => Err(Abort::TOO_LONG),
             Some(size) if fixed.is_some_and(|fixed| size < fixed) => Err(Abort::TOO_SHORT),
             _ => Ok((slot, fixed)),
@@ -80,19 +90,32 @@ impl Slave {
             toggle,
         } = self.sdo.transfer
         else {
-            let named = Address::from_multiplexer([m0, m1, m2]);
-            return Err((named, Abort::UNKNOWN_COMMAND));
+            return self.stray_download_segment(now, command, [m0, m1, m2]);
         };
         let refused = |abort| (address, abort);
+        let settings = &self.behaviour.sdo;
+        let (obeys_unused, checks_size) = (settings.unused_obeyed, settings.size_checked);
+        let toggle = if settings.download_toggle_checked {
+            toggle
+        } else {
+            command & 0x10 != 0
+        };
         if (command & 0x10 != 0) != toggle {
             return Err(refused(Abort::TOGGLE));
         }
         let slot = self.objects.find(address).map_err(refused)?;
         let fixed = self.objects.at(slot).and_then(|object| object.size());
         let [_, data @ ..] = request;
-        let used = SEGMENT - usize::from(command >> 1 & 0x07);
+        let unused = usize::from(command >> 1 & 0x07);
+        let used = if obeys_unused {
+            SEGMENT - unused
+        } else {
+            SEGMENT
+        };
         self.sdo.buffer.extend(data.iter().take(used));
-        if self.sdo.buffer.len() > size.or(fixed).unwrap_or(LONGEST_VALUE) {
+        let longest = size.filter(|_| checks_size).or(fixed);
+        let longest = longest.filter(|_| obeys_unused).unwrap_or(LONGEST_VALUE);
+        if self.sdo.buffer.len() > longest {
             return Err(refused(Abort::TOO_LONG));
         }
         let answer = 0x20 | u8::from(toggle) << 4;
@@ -106,13 +129,31 @@ impl Slave {
             return Ok(());
         }
         self.sdo.transfer = Transfer::None;
-        if size.is_some_and(|size| size != self.sdo.buffer.len()) {
+        if checks_size && obeys_unused && size.is_some_and(|size| size != self.sdo.buffer.len()) {
             return Err(refused(Abort::LENGTH));
         }
         let value = std::mem::take(&mut self.sdo.buffer);
         let outcome = self.commit(now, answer, address, slot, &value, application);
         self.sdo.buffer = value;
         outcome
+    }
+
+    fn stray_download_segment(
+        &mut self,
+        now: Instant,
+        command: u8,
+        named: [u8; 3],
+    ) -> Result<(), Refusal> {
+        match self.behaviour.sdo.stray_segment {
+            StraySegment::Refused => {
+                Err((Address::from_multiplexer(named), Abort::UNKNOWN_COMMAND))
+            }
+            StraySegment::Ignored => Ok(()),
+            StraySegment::Answered => {
+                self.confirm_segment(now, 0x20 | command & 0x10);
+                Ok(())
+            }
+        }
     }
 
     /// Writes, and answers with `command` unless the application takes its time.
@@ -125,6 +166,21 @@ impl Slave {
         value: &[u8],
         application: &mut dyn Application,
     ) -> Result<(), Refusal> {
+        let fitted = self.fit(slot, value);
+        let value = fitted.as_deref().unwrap_or(value);
+        let object = self.objects.at(slot);
+        if !self.behaviour.sdo.same_value_taken
+            && object.is_some_and(|object| object.value() == value)
+        {
+            return Err((address, Abort::DEVICE_STATE));
+        }
+        if object.is_some_and(|object| !object.writable) {
+            if self.behaviour.sdo.read_only == ReadOnly::Written {
+                self.objects.set(address, value);
+            }
+            self.confirm(now, command, address, [0; 4]);
+            return Ok(());
+        }
         if self.behaviour.upload_lags_download {
             let before = self.objects.at(slot).map(|object| object.value().to_vec());
             self.sdo.before = before.map(|before| (address, before));
@@ -145,6 +201,17 @@ impl Slave {
             .for_each(|(to, from)| *to = *from);
         self.confirm_from(now, node, command, address, echo);
         Ok(())
+    }
+
+    /// `value` cut or filled up to the size of the object, if its length is not checked.
+    fn fit(&self, slot: usize, value: &[u8]) -> Option<Vec<u8>> {
+        let size = self.objects.at(slot)?.size()?;
+        if self.behaviour.sdo.length_checked || value.len() == size {
+            return None;
+        }
+        let mut value = value.to_vec();
+        value.resize(size, 0);
+        Some(value)
     }
 
     fn confirm(&mut self, now: Instant, command: u8, address: Address, echo: [u8; 4]) {
@@ -179,7 +246,14 @@ impl Slave {
     }
 
     fn confirm_segment(&mut self, now: Instant, command: u8) {
-        self.respond(now, [command, 0, 0, 0, 0, 0, 0, 0]);
+        let mut answer = if self.behaviour.sdo.reserved_bytes_zero {
+            [0; 8]
+        } else {
+            self.sdo.request
+        };
+        let [first, ..] = &mut answer;
+        *first = command;
+        self.respond(now, answer);
     }
 
     /// The application has written what was to be written to `address`.

@@ -2,7 +2,12 @@
 
 mod block;
 mod download;
+mod settings;
+#[cfg(test)]
+mod tests;
 mod upload;
+
+use std::time::Duration;
 
 use fieldproof_can::{Frame, StandardId};
 use fieldproof_link::Instant;
@@ -12,6 +17,9 @@ use super::queue::{Service, identifier};
 use super::{Abort, AbortMultiplexer, Address, Application, Slave};
 use block::{AskedBlocks, BlockDownload, BlockUpload};
 pub use block::{BlockTransfer, Recovery};
+pub use settings::{
+    ClientAbort, OrdinaryTransfer, ReadOnly, SecondInitiate, ShortRequest, StraySegment,
+};
 
 /// The longest value of an object without a fixed size, in bytes.
 const LONGEST_VALUE: usize = 1 << 15;
@@ -71,7 +79,15 @@ pub(super) struct Server {
     deadline: Option<Instant>,
     /// The identifier of its answers, if it is not the default server's.
     answers_on: Option<u16>,
+    /// The last request.
+    request: [u8; 8],
+    /// How many transfers were asked for, and how many answers were given.
+    asked: u32,
+    answered: u32,
 }
+
+/// What a late answer takes more than others.
+const LATE: Duration = Duration::from_millis(700);
 
 impl Server {
     /// A server beside the default one.
@@ -79,6 +95,13 @@ impl Server {
         Server {
             answers_on: identifier,
             ..Server::default()
+        }
+    }
+
+    /// A reset.
+    pub(super) fn reset(&mut self, settings: &OrdinaryTransfer) {
+        if settings.reset_ends {
+            *self = Server::default();
         }
     }
 
@@ -95,6 +118,11 @@ impl Server {
     pub(super) const fn deadline(&self) -> Option<Instant> {
         self.deadline
     }
+
+    /// Answers as `other` does, which answers as this one did.
+    pub(super) const fn exchange_identifier(&mut self, other: &mut Server) {
+        std::mem::swap(&mut self.answers_on, &mut other.answers_on);
+    }
 }
 
 impl Slave {
@@ -108,9 +136,10 @@ impl Slave {
         if silent && !self.behaviour.nmt.requests_done_in_stopped {
             return;
         }
-        let Ok(request) = <[u8; 8]>::try_from(frame.bytes()) else {
+        let Some(request) = self.whole_request(now, frame) else {
             return;
         };
+        self.sdo.request = request;
         let outcome = match self.serve_blocks(now, &request, application) {
             Some(outcome) => outcome,
             None => self.serve_ordinary(now, &request, application),
@@ -118,10 +147,50 @@ impl Slave {
         if let Err((address, abort)) = outcome {
             self.abort(now, address, abort);
         }
-        self.await_block_request(now);
+        self.await_request(now);
         if silent {
             self.queue.retain(|service| service != Service::Sdo);
         }
+    }
+
+    /// A request has 8 bytes.
+    fn whole_request(&mut self, now: Instant, frame: &Frame) -> Option<[u8; 8]> {
+        let bytes = frame.bytes();
+        if let Ok(request) = <[u8; 8]>::try_from(bytes) {
+            return Some(request);
+        }
+        let mut request = [0; 8];
+        request
+            .iter_mut()
+            .zip(bytes)
+            .for_each(|(to, from)| *to = *from);
+        match self.behaviour.sdo.short_request {
+            ShortRequest::Executed if !frame.is_remote() => Some(request),
+            ShortRequest::Refused if !frame.is_remote() => {
+                let [_, m0, m1, m2, ..] = request;
+                let named = Address::from_multiplexer([m0, m1, m2]);
+                self.abort(now, named, Abort::UNKNOWN_COMMAND);
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// A new transfer is asked for, of `address`; what comes of it, if it is not to be served.
+    fn begins(&mut self, address: Address) -> Option<Result<(), Refusal>> {
+        let settings = &self.behaviour.sdo;
+        if let Transfer::Upload { .. } | Transfer::Download { .. } = self.sdo.transfer {
+            match settings.second_initiate {
+                SecondInitiate::Served => {}
+                SecondInitiate::Aborted => return Some(Err((address, Abort::UNKNOWN_COMMAND))),
+                SecondInitiate::Ignored => return Some(Ok(())),
+            }
+        }
+        self.sdo.asked = self.sdo.asked.wrapping_add(1);
+        let refused = settings
+            .refused_each
+            .is_some_and(|each| self.sdo.asked.is_multiple_of(each));
+        refused.then_some(Err((address, Abort::OUT_OF_MEMORY)))
     }
 
     fn serve_ordinary(
@@ -132,35 +201,54 @@ impl Slave {
     ) -> Result<(), Refusal> {
         let [command, m0, m1, m2, data @ ..] = *request;
         let address = Address::from_multiplexer([m0, m1, m2]);
+        if matches!(command >> 5, 1 | 2)
+            && let Some(outcome) = self.begins(address)
+        {
+            return outcome;
+        }
         match command >> 5 {
             0 => self.download_segment(now, request, application),
             1 => self.initiate_download(now, command, address, data, application),
             2 => self.begin_upload(now, address, Asked::Ordinary, application),
             3 => self.upload_segment(now, command, address),
-            4 => {
-                self.forget_segments();
-                self.sdo.transfer = Transfer::None;
-                Ok(())
-            }
+            4 => self.client_aborts(address),
             _ if self.behaviour.unknown_command_refused => Err((address, Abort::UNKNOWN_COMMAND)),
             _ => Ok(()),
         }
     }
 
+    fn client_aborts(&mut self, address: Address) -> Result<(), Refusal> {
+        match self.behaviour.sdo.client_abort {
+            ClientAbort::Obeyed => {
+                self.forget_segments();
+                self.sdo.transfer = Transfer::None;
+                Ok(())
+            }
+            ClientAbort::Ignored => Ok(()),
+            ClientAbort::Refused => Err((address, Abort::UNKNOWN_COMMAND)),
+        }
+    }
+
     pub(super) fn abort(&mut self, now: Instant, address: Address, abort: Abort) {
-        self.forget_segments();
-        self.sdo.transfer = Transfer::None;
+        if self.behaviour.sdo.own_abort_final {
+            self.forget_segments();
+            self.sdo.transfer = Transfer::None;
+        }
+        let [_, r0, r1, r2, ..] = self.sdo.request;
         let named = match self.behaviour.abort_multiplexer {
             AbortMultiplexer::OfRequest => address,
+            AbortMultiplexer::OfFrame => Address::from_multiplexer([r0, r1, r2]),
             AbortMultiplexer::NextIndex => {
                 Address::new(address.index().wrapping_add(1), address.sub())
             }
         };
-        let code = if abort == Abort::NO_SUB_INDEX {
-            self.behaviour.abort_no_sub_index
-        } else {
-            abort.0
-        };
+        let codes = self.behaviour.abort_codes.iter();
+        let code = codes.fold(
+            abort.0,
+            |code, (meant, said)| {
+                if abort.0 == *meant { *said } else { code }
+            },
+        );
         let [m0, m1, m2] = named.multiplexer();
         let [c0, c1, c2, c3] = code.to_le_bytes();
         self.respond(now, [0x80, m0, m1, m2, c0, c1, c2, c3]);
@@ -171,7 +259,11 @@ impl Slave {
     }
 
     pub(super) fn respond_from(&mut self, now: Instant, node: u8, response: [u8; 8]) {
-        let at = now + self.turnaround();
+        self.sdo.answered = self.sdo.answered.wrapping_add(1);
+        let each = self.behaviour.sdo.late_each;
+        let late = each.is_some_and(|each| self.sdo.answered.is_multiple_of(each));
+        let extra = if late { LATE } else { Duration::ZERO };
+        let at = now + self.turnaround() + extra;
         self.respond_at(at, node, response);
     }
 
@@ -182,8 +274,13 @@ impl Slave {
 
     fn respond_at(&mut self, at: Instant, node: u8, response: [u8; 8]) {
         let identifier = self.answers_from(node);
-        self.queue
-            .push(at, Service::Sdo, Frame::of_eight(identifier, response));
+        let mut frame = Frame::of_eight(identifier, response);
+        if !self.behaviour.sdo.padded {
+            let used = response.iter().rposition(|byte| *byte != 0);
+            let bytes = response.get(..=used.unwrap_or(0)).unwrap_or(&response);
+            frame = Frame::data(identifier, bytes).unwrap_or(frame);
+        }
+        self.queue.push(at, Service::Sdo, frame);
     }
 }
 

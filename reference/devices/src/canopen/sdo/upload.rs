@@ -2,7 +2,7 @@
 
 use fieldproof_link::Instant;
 
-use super::{Asked, Refusal, SEGMENT, Transfer, is_mapping_entry};
+use super::{Asked, Refusal, SEGMENT, StraySegment, Transfer, is_mapping_entry};
 use crate::canopen::{Abort, Address, Answer, Application, Slave};
 
 impl Slave {
@@ -16,8 +16,17 @@ impl Slave {
         let refused = |abort| (address, abort);
         self.forget_segments();
         self.sdo.transfer = Transfer::None;
-        let slot = self.objects.find(address).map_err(refused)?;
-        if self.objects.at(slot).is_none_or(|object| !object.readable) {
+        let slot = match self.objects.find(address) {
+            Ok(slot) => slot,
+            Err(abort) if self.answers_without_object(address, abort) => {
+                let [m0, m1, m2] = address.multiplexer();
+                self.respond(now, [0x43, m0, m1, m2, 0, 0, 0, 0]);
+                return Ok(());
+            }
+            Err(abort) => return Err(refused(abort)),
+        };
+        let readable = self.objects.at(slot).is_some_and(|object| object.readable);
+        if !readable && self.behaviour.sdo.write_only_checked {
             return Err(refused(Abort::WRITE_ONLY));
         }
         match application.reading(address) {
@@ -26,6 +35,18 @@ impl Slave {
             Answer::Later => self.sdo.transfer = Transfer::Reading { address, asked },
         }
         Ok(())
+    }
+
+    /// Whether a value is invented where there is none.
+    fn answers_without_object(&self, address: Address, abort: Abort) -> bool {
+        match abort {
+            Abort::NO_SUB_INDEX if !self.behaviour.sdo.gaps_refused => {
+                let highest = self.objects.number(Address::new(address.index(), 0));
+                highest.is_some_and(|highest| u32::from(address.sub()) < highest)
+            }
+            Abort::NO_OBJECT => !self.behaviour.sdo.unknown_object_refused,
+            _ => false,
+        }
     }
 
     fn answer_upload(&mut self, now: Instant, address: Address, slot: usize, asked: Asked) {
@@ -45,6 +66,9 @@ impl Slave {
         let mut response = [0; 8];
         let [command, m0, m1, m2, data @ ..] = &mut response;
         [*m0, *m1, *m2] = address.multiplexer();
+        let settings = &self.behaviour.sdo;
+        let empty = value.is_empty() && !settings.empty_sent;
+        let value = if empty { &[0; 4] } else { value };
         if (1..=4).contains(&value.len()) {
             data.iter_mut()
                 .zip(value)
@@ -61,9 +85,13 @@ impl Slave {
             };
             *command = 0x43 | ((4 - size) << 2).to_le_bytes()[0];
         } else {
-            *command = 0x41;
-            let [s0, s1, ..] = value.len().to_le_bytes();
-            *data = [s0, s1, 0, 0];
+            let size = value.len() + settings.surplus_size;
+            let [s0, s1, ..] = size.to_le_bytes();
+            (*command, *data) = if settings.size_given {
+                (0x41, [s0, s1, 0, 0])
+            } else {
+                (0x40, [0; 4])
+            };
             self.sdo.buffer.clear();
             self.sdo.buffer.extend_from_slice(value);
             self.sdo.transfer = Transfer::Upload {
@@ -92,7 +120,20 @@ impl Slave {
             toggle,
         } = self.sdo.transfer
         else {
-            return Err((named, Abort::UNKNOWN_COMMAND));
+            return match self.behaviour.sdo.stray_segment {
+                StraySegment::Refused => Err((named, Abort::UNKNOWN_COMMAND)),
+                StraySegment::Ignored => Ok(()),
+                StraySegment::Answered => {
+                    self.respond(now, [command & 0x10 | 0x01, 0, 0, 0, 0, 0, 0, 0]);
+                    Ok(())
+                }
+            };
+        };
+        let settings = &self.behaviour.sdo;
+        let toggle = if settings.upload_toggle_checked {
+            toggle
+        } else {
+            command & 0x10 != 0
         };
         if (command & 0x10 != 0) != toggle {
             return Err((address, Abort::TOGGLE));
@@ -102,10 +143,21 @@ impl Slave {
         let last = rest.len() <= SEGMENT;
         let mut response = [0; 8];
         let [first, data @ ..] = &mut response;
-        data.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
+        let place = if settings.long_offset {
+            offset
+        } else {
+            offset & 0xFF
+        };
+        let part = self.sdo.buffer.get(place..).unwrap_or_default();
+        data.iter_mut().zip(part).for_each(|(to, from)| *to = *from);
         let shown = toggle && self.behaviour.toggle_alternates;
-        let unused = (SEGMENT - size).to_le_bytes()[0];
-        *first = u8::from(shown) << 4 | unused << 1 | u8::from(last);
+        let unused = if settings.unused_given {
+            (SEGMENT - size).to_le_bytes()[0]
+        } else {
+            0
+        };
+        let marked = last && settings.last_marked;
+        *first = u8::from(shown) << 4 | unused << 1 | u8::from(marked);
         self.sdo.transfer = if last {
             Transfer::None
         } else {
@@ -144,6 +196,6 @@ impl Slave {
             (Ok(_), Ok(slot)) => self.answer_upload(now, address, slot, asked),
             (Err(abort), _) | (_, Err(abort)) => self.abort(now, address, abort),
         }
-        self.await_block_request(now);
+        self.await_request(now);
     }
 }

@@ -1,8 +1,8 @@
 use fieldproof_dictionary::Access;
-use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_dictionary::registers::Table;
 
 use super::*;
-use crate::modbus::script::Script;
+use crate::modbus::script::{Script, register_map};
 
 fn drive(address: u8) -> Script<DriveRegisters> {
     Script::new(DriveRegisters::new(address, LINE), DOCUMENTED)
@@ -138,15 +138,11 @@ fn process_values_and_settings_that_do_not_exist() {
 /// The drive and its description come from the same manual by two hands.
 #[test]
 fn drive_is_what_its_description_claims() {
-    let text = include_str!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../fixtures/devices/huacheng-ssts1/huacheng-ssts1.registers"
-    ));
     let registers = DriveRegisters::default();
-    let map = RegisterMap::parse(text).unwrap();
-    for claimed in map.registers() {
+    let map = register_map("huacheng-ssts1");
+    for claimed in map.table(Table::Holding).unwrap().registers() {
         let number = claimed.address;
-        for word in 0..claimed.words {
+        for word in 0..claimed.kind.words() {
             let read = registers.read(number + word, &DOCUMENTED);
             assert!(read.is_ok(), "P{number}");
             let writable = registers.check_write(number + word, read.unwrap());
@@ -156,7 +152,7 @@ fn drive_is_what_its_description_claims() {
                 "P{number}"
             );
         }
-        if claimed.words == 2 || claimed.access != Access::ReadWrite {
+        if claimed.kind.words() == 2 || claimed.access != Access::ReadWrite {
             continue;
         }
         if let Some(default) = claimed.default {
@@ -164,13 +160,13 @@ fn drive_is_what_its_description_claims() {
             assert_eq!(i64::from(read), default, "P{number}");
         }
         for (value, allowed) in [
-            (claimed.low - 1, false),
-            (claimed.low, true),
-            (claimed.high, true),
-            (claimed.high + 1, false),
+            (claimed.lowest() - 1, false),
+            (claimed.lowest(), true),
+            (claimed.highest(), true),
+            (claimed.highest() + 1, false),
         ] {
-            // What no word can hold cannot be written.
-            if (-32_768..=65_535).contains(&value) && (claimed.signed || value >= 0) {
+            // What the type cannot hold cannot be written.
+            if (claimed.kind.lowest()..=claimed.kind.highest()).contains(&value) {
                 let word = u16::try_from(value & 0xFFFF).unwrap();
                 let written = registers.check_write(number, word);
                 assert_eq!(written.is_ok(), allowed, "P{number} = {value}");

@@ -1,8 +1,8 @@
 use fieldproof_dictionary::Access;
-use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_dictionary::registers::Table;
 
 use super::*;
-use crate::modbus::script::Script;
+use crate::modbus::script::{Script, register_map};
 use crate::modbus::{FAULTS, Registers};
 
 fn encoder() -> Script<EncoderRegisters> {
@@ -406,14 +406,11 @@ fn fault_speed_sign_lost() {
 /// The encoder and its description come from the same manual by two hands.
 #[test]
 fn encoder_is_what_its_description_claims() {
-    let text = include_str!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../fixtures/devices/liaomiao-encoder/liaomiao-encoder.registers"
-    ));
     let registers = EncoderRegisters::default();
-    let map = RegisterMap::parse(text).unwrap();
-    assert_eq!(map.len(), 19);
-    for claimed in map.registers() {
+    let map = register_map("liaomiao-encoder");
+    let holding = map.table(Table::Holding).unwrap();
+    assert_eq!(holding.len(), 19);
+    for claimed in holding.registers() {
         let register = claimed.address;
         let read = registers.read(register, &Behaviour::CONFORMING);
         assert_eq!(
@@ -424,7 +421,7 @@ fn encoder_is_what_its_description_claims() {
         if let Some(default) = claimed.default {
             assert_eq!(read.map(i64::from), Ok(default), "{register:04X}");
         }
-        for value in [claimed.low, claimed.high] {
+        for value in [claimed.lowest(), claimed.highest()] {
             let word = u16::try_from(value & 0xFFFF).unwrap();
             let written = registers.check_write(register, word);
             if claimed.access == Access::ReadOnly {

@@ -116,7 +116,17 @@ impl Slave {
             begun: false,
             ..download
         });
-        self.respond(now, [0xA2, received, size, 0, 0, 0, 0, 0]);
+        let [_, _, _, rest @ ..] = self.reserved_bytes();
+        let [r3, r4, r5, r6, r7] = rest;
+        self.respond(now, [0xA2, received, size, r3, r4, r5, r6, r7]);
+    }
+
+    fn stray_end(&mut self, now: Instant, named: Address) -> Result<(), Refusal> {
+        if self.behaviour.block.stray_end_refused {
+            return Err(out_of_place(named));
+        }
+        self.respond(now, [END, 0, 0, 0, 0, 0, 0, 0]);
+        Ok(())
     }
 
     /// Writes what has come, before the transfer has ended.
@@ -147,7 +157,7 @@ impl Slave {
     ) -> Result<(), Refusal> {
         let [command, c0, c1, m2, ..] = *request;
         let Transfer::BlockDownload(download) = self.sdo.transfer else {
-            return Err(out_of_place(Address::from_multiplexer([c0, c1, m2])));
+            return self.stray_end(now, Address::from_multiplexer([c0, c1, m2]));
         };
         let refused = |abort| (download.address, abort);
         let block = &self.behaviour.block;

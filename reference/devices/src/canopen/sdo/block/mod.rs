@@ -66,6 +66,11 @@ impl Slave {
             return Some(Ok(()));
         }
         let named = Address::from_multiplexer([m0, m1, m2]);
+        if matches!((command >> 5, command & 0x03), (5, 0) | (6, 0 | 2))
+            && let Some(outcome) = self.begins(named)
+        {
+            return Some(outcome);
+        }
         match (command >> 5, command & 0x03) {
             (5, 0) => Some(self.initiate_block_upload(now, request, application)),
             (5, 1) => Some(self.end_block_upload(named)),
@@ -77,12 +82,15 @@ impl Slave {
         }
     }
 
-    /// Waits for the next request of a block transfer, if one is open.
-    pub(super) fn await_block_request(&mut self, now: Instant) {
+    /// Waits for the next request of a transfer, if one is open.
+    pub(super) fn await_request(&mut self, now: Instant) {
         let block = &self.behaviour.block;
         self.sdo.deadline = match self.sdo.transfer {
             Transfer::BlockDownload(download) if download.has_come() => Some(now + block.pause),
             transfer if transfer.is_block() => Some(now + block.timeout),
+            Transfer::Upload { .. } | Transfer::Download { .. } => {
+                self.behaviour.sdo.timeout.map(|timeout| now + timeout)
+            }
             _ => None,
         };
     }
@@ -96,13 +104,24 @@ impl Slave {
         match self.sdo.transfer {
             Transfer::BlockDownload(download) if download.has_come() => {
                 self.acknowledge_block(now, download);
-                self.await_block_request(now);
+                self.await_request(now);
             }
-            Transfer::BlockDownload(BlockDownload { address, .. })
+            Transfer::Upload { address, .. }
+            | Transfer::Download { address, .. }
+            | Transfer::BlockDownload(BlockDownload { address, .. })
             | Transfer::BlockUpload(BlockUpload { address, .. }) => {
                 self.abort(now, address, Abort::TIMED_OUT);
             }
             _ => {}
+        }
+    }
+
+    /// What stands in the bytes of an answer that hold nothing.
+    fn reserved_bytes(&self) -> [u8; 8] {
+        if self.behaviour.block.reserved_bytes_zero {
+            [0; 8]
+        } else {
+            self.sdo.request
         }
     }
 

@@ -53,6 +53,10 @@ pub struct BlockTransfer {
     pub written_at_end: bool,
     /// The end of a download is confirmed.
     pub end_confirmed: bool,
+    /// The reserved bytes of its acknowledges and ends are 0, and not what the request had there.
+    pub reserved_bytes_zero: bool,
+    /// The end of a download that was never begun is refused.
+    pub stray_end_refused: bool,
     /// How it gets out of a transfer that is not carried on.
     pub recovery: Recovery,
 }
@@ -94,6 +98,8 @@ impl Default for BlockTransfer {
             size_checked: true,
             written_at_end: true,
             end_confirmed: true,
+            reserved_bytes_zero: true,
+            stray_end_refused: true,
             recovery: Recovery::Full,
         }
     }

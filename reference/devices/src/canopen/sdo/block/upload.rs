@@ -194,7 +194,9 @@ impl Slave {
             0
         };
         let [c0, c1] = crc.to_le_bytes();
-        self.respond(now, [0xC1 | unused << 2, c0, c1, 0, 0, 0, 0, 0]);
+        let [_, _, _, rest @ ..] = self.reserved_bytes();
+        let [r3, r4, r5, r6, r7] = rest;
+        self.respond(now, [0xC1 | unused << 2, c0, c1, r3, r4, r5, r6, r7]);
     }
 
     pub(super) fn end_block_upload(&mut self, named: Address) -> Result<(), Refusal> {
