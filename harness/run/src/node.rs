@@ -25,6 +25,8 @@ pub(crate) struct NodeWatch {
     pub(crate) heartbeat_period: Option<Duration>,
     /// What 1017h holds after a reset.
     heartbeat_by_default: bool,
+    /// When it was asked for its state by guarding requests whose answers have not been expected yet.
+    guarding_requests: Vec<Instant>,
 }
 
 impl NodeWatch {
@@ -36,6 +38,7 @@ impl NodeWatch {
             heartbeat_ended_at: None,
             heartbeat_period: None,
             heartbeat_by_default,
+            guarding_requests: Vec::new(),
         }
     }
 
@@ -53,6 +56,7 @@ impl NodeWatch {
     pub(crate) fn begin_case(&mut self) {
         self.states.drain(..self.states.len().saturating_sub(1));
         self.heartbeat_ended_at = None;
+        self.guarding_requests.clear();
     }
 
     /// Follows a frame of the tester.
@@ -68,7 +72,27 @@ impl NodeWatch {
             }
         } else if id == cob_id(Service::SdoRequest, Some(node)) {
             self.written(frame);
+        } else if id == cob_id(Service::ErrorControl, Some(node)) && frame.is_remote() {
+            self.guarding_requests.push(at);
         }
+    }
+
+    /// A frame of error control was expected. Beside a heartbeat nobody can tell whether it was a guarding answer.
+    pub(crate) fn expected_error_control(&mut self, at: Instant, within: Duration) {
+        if !self.heartbeat {
+            self.takes_guarding_answer(at, within);
+        }
+    }
+
+    /// Whether a frame at `at` may be a guarding answer: there is one for each request, within some time.
+    pub(crate) fn takes_guarding_answer(&mut self, at: Instant, within: Duration) -> bool {
+        let asked = self
+            .guarding_requests
+            .iter()
+            .rposition(|asked| *asked <= at && at <= *asked + within);
+        asked
+            .map(|place| self.guarding_requests.remove(place))
+            .is_some()
     }
 
     /// It has booted: it is pre-operational, and forgets what was only in its memory.
@@ -203,6 +227,25 @@ mod tests {
         assert!(watch.agrees(NmtState::Operational, ms(209), TRANSITION));
         assert!(!watch.agrees(NmtState::Operational, ms(211), TRANSITION));
         assert!(!watch.agrees(NmtState::PreOperational, ms(209), TRANSITION));
+    }
+
+    #[test]
+    fn a_guarding_request_may_be_answered_once() {
+        let mut watch = watch();
+        let within = Duration::from_millis(50);
+        let request = Frame::remote(cob_id(Service::ErrorControl, NodeId::new(1)), 1);
+        watch.sent(&request.expect("a frame"), ms(300), NodeId::new(1));
+        assert!(!watch.takes_guarding_answer(ms(299), within));
+        assert!(!watch.takes_guarding_answer(ms(351), within));
+        assert!(watch.takes_guarding_answer(ms(310), within));
+        assert!(!watch.takes_guarding_answer(ms(311), within));
+        watch.sent(&request.expect("a frame"), ms(400), NodeId::new(1));
+        watch.expected_error_control(ms(401), within);
+        assert!(watch.takes_guarding_answer(ms(402), within), "a heartbeat");
+        watch.wrote(Multiplexer::new(0x1017, 0), &[0, 0]);
+        watch.sent(&request.expect("a frame"), ms(500), NodeId::new(1));
+        watch.expected_error_control(ms(501), within);
+        assert!(!watch.takes_guarding_answer(ms(502), within));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use fieldproof_link::{CompanionIndex, PortIndex};
 use fieldproof_record::{Event, Limits, Measurement, Observation, Verdict};
 use fieldproof_suite::device::{DeviceDescription, Feature};
 use fieldproof_suite::scalar::ObjectAddress;
-use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id};
+use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id, identify};
 
 use crate::limits::{judge, nanoseconds, show};
 use crate::node::NodeWatch;
@@ -104,10 +104,17 @@ impl Tester<'_> {
                 && matches!(received.message, Message::Can(frame) if frame.id() == id)
         };
         let found = self.session.first(deadline, wanted)?;
-        Ok(found.and_then(|received| match received.message {
+        let found = found.and_then(|received| match received.message {
             Message::Can(frame) => Some((frame, received)),
             Message::Serial { .. } => None,
-        }))
+        });
+        if let Some((frame, received)) = &found
+            && frame.standard_id().and_then(identify) == Some((Service::ErrorControl, self.node))
+        {
+            let within = self.device.timing.sdo_response;
+            self.watch.expected_error_control(received.at, within);
+        }
+        Ok(found)
     }
 
     /// Records how long something took since the last send, and judges it.

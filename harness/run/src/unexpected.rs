@@ -13,7 +13,6 @@ use fieldproof_wire::describe::describe_frame;
 use crate::modbus::show_bytes;
 use crate::node::NodeWatch;
 use crate::session::{Message, Received};
-use crate::steps::wire_state;
 use crate::stop::{Came, Stop};
 use crate::tester::{SERIAL, Tester};
 
@@ -34,6 +33,9 @@ impl Tester<'_> {
     pub(crate) fn judge_unexpected(&mut self, forbids: &[Forbidden]) -> Result<(), Stop> {
         let mut pdos: BTreeMap<u32, usize> = BTreeMap::new();
         for received in self.session.take_unexpected() {
+            if self.is_optional_answer(&received) {
+                continue;
+            }
             match self.judge_one(&received, forbids) {
                 Judgement::Proper => {}
                 Judgement::Pdo(id) => *pdos.entry(id).or_default() += 1,
@@ -90,6 +92,27 @@ impl Tester<'_> {
         }
     }
 
+    /// An answer to a guarding request that no step expected, with a state that the node may have: whether a node with a
+    /// heartbeat or without a guard time answers is its own affair.
+    fn is_optional_answer(&mut self, received: &Received) -> bool {
+        let Message::Can(frame) = &received.message else {
+            return false;
+        };
+        let service = frame.standard_id().and_then(identify);
+        let own = self.node.is_some() && service == Some((Service::ErrorControl, self.node));
+        let (Some(at), [state]) = (own.then_some(received.at), frame.bytes()) else {
+            return false;
+        };
+        let known = nmt_state(*state).is_some_and(|state| {
+            let transition = self.device.timing.nmt_transition;
+            self.watch.agrees(state, at, transition)
+        });
+        known
+            && self
+                .watch
+                .takes_guarding_answer(at, self.device.timing.sdo_response)
+    }
+
     fn judge_error_control(&self, frame: &Frame, at: Instant, node: Option<NodeId>) -> Judgement {
         let transition = self.device.timing.nmt_transition;
         if is_proper_heartbeat(frame, at, &self.watch, self.node, transition) {
@@ -127,14 +150,21 @@ pub(crate) fn is_proper_heartbeat(
         return false;
     };
     let [state] = frame.bytes() else { return false };
-    let state = match State::from_code(*state) {
-        State::Stopped => NmtState::Stopped,
-        State::Operational => NmtState::Operational,
-        State::PreOperational => NmtState::PreOperational,
-        _ => return false,
+    // Bit 7 belongs to guarding.
+    let Some(state) = nmt_state(*state).filter(|_| *state < 0x80) else {
+        return false;
     };
-    debug_assert_eq!(wire_state(state).code(), frame.bytes()[0]);
     from == node && watch.had_heartbeat(at) && watch.agrees(state, at, transition)
+}
+
+/// The state that a byte of error control names; bit 7 is not part of it.
+const fn nmt_state(code: u8) -> Option<NmtState> {
+    match State::from_code(code) {
+        State::Stopped => Some(NmtState::Stopped),
+        State::Operational => Some(NmtState::Operational),
+        State::PreOperational => Some(NmtState::PreOperational),
+        _ => None,
+    }
 }
 
 fn unexpected(kind: &str, came: &str, what: Came) -> Stop {

@@ -2,7 +2,7 @@
 //!
 //! | line | means |
 //! | --- | --- |
-//! | `> 601#4063600000000000` | a frame to port 0; `#R` for a remote frame |
+//! | `> 601#4063600000000000` | a frame to port 0; `#R`, `#R1` for a remote frame, eight digits for a 29-bit identifier |
 //! | `< 581#4363600013D1FFFF` | a frame from port 0 |
 //! | `>> 20 03 00 00 00 01 82 BB` | characters to port 1, without gaps |
 //! | `<< 20 03 02 0F B4 01 C4` | characters from port 1; with a companion there, `>>` is what that answers |
@@ -213,13 +213,22 @@ fn deliver(
     }
 }
 
+/// What `script` makes of a device of `kind` that is a legal variant.
+pub(crate) fn as_variant(kind: &DeviceKind, variant: &str, script: &str) -> String {
+    let settings = Settings {
+        variant: Some(variant.to_owned()),
+        ..Settings::default()
+    };
+    Script::new(kind, &settings).play(script)
+}
+
 /// What `script` makes of a device of `kind`.
 pub(crate) fn without_fault(kind: &DeviceKind, script: &str) -> String {
     Script::new(kind, &Settings::default()).play(script)
 }
 
 /// What `script` makes of a device of `kind` with one fault.
-fn with_fault(kind: &DeviceKind, fault: &str, script: &str) -> String {
+pub(crate) fn with_fault(kind: &DeviceKind, fault: &str, script: &str) -> String {
     let settings = Settings {
         fault: Some(fault.to_owned()),
         ..Settings::default()
@@ -267,9 +276,15 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
 
 fn frame(text: &str) -> Frame {
     let (id, data) = text.split_once('#').unwrap();
+    if id.len() == 8 {
+        return text.parse().unwrap();
+    }
     let id = Id::standard(u16::from_str_radix(id, 16).unwrap()).unwrap();
     if data == "R" {
         return Frame::remote(id, 0).unwrap();
+    }
+    if let Some(length) = data.strip_prefix('R') {
+        return Frame::remote(id, length.parse().unwrap()).unwrap();
     }
     let byte = |place| u8::from_str_radix(&data[place..place + 2], 16).unwrap();
     let bytes: Vec<u8> = (0..data.len()).step_by(2).map(byte).collect();

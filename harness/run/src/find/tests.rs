@@ -269,6 +269,8 @@ fn the_gaps_are_between_and_beside() {
             "s/c[o=1016:00] 0x1016"
         ]
     );
+    let alone = "each: {o: {is: absent-object, index: [1017, 1F80]}}";
+    assert_eq!(cases(alone, "{o-index}"), ["s/c[o=1F80:00] 0x1F80"]);
     assert_eq!(
         cases(
             "each: {o: {is: absent-object, index: 1280-12FF}}",

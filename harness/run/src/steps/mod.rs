@@ -13,7 +13,6 @@ mod serial;
 use fieldproof_suite::model::{Repeat, Step};
 
 pub(crate) use frames::main_role;
-pub(crate) use nmt::wire_state;
 
 use crate::stop::Stop;
 use crate::tester::Tester;

@@ -353,7 +353,7 @@ enum Observed {
     CannotTell,
 }
 
-pub(crate) const fn wire_state(state: NmtState) -> State {
+const fn wire_state(state: NmtState) -> State {
     match state {
         NmtState::PreOperational => State::PreOperational,
         NmtState::Operational => State::Operational,

@@ -5,11 +5,8 @@ mod can;
 mod case;
 mod device;
 mod modbus;
-<<<<<<< HEAD
 mod pdo;
-=======
 mod registers;
->>>>>>> main
 mod sdo;
 mod short;
 mod stimulate;
@@ -21,11 +18,8 @@ pub(crate) use can::*;
 pub(crate) use case::*;
 pub(crate) use device::*;
 pub(crate) use modbus::*;
-<<<<<<< HEAD
 pub(crate) use pdo::*;
-=======
 pub(crate) use registers::*;
->>>>>>> main
 pub(crate) use sdo::*;
 pub(crate) use stimulate::*;
 

@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, Departures, Manners, ObjectFault, OrdinaryTransfer, PdoBehaviour};
+use super::{
+    BlockTransfer, Departures, ErrorControlSettings, Manners, NmtSettings, ObjectFault,
+    OrdinaryTransfer, PdoBehaviour,
+};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -28,6 +31,10 @@ pub struct Behaviour {
     pub manners: Manners,
     /// Departures from the rules of SYNC, EMCY, TIME, storing and COB-IDs.
     pub departs: Departures,
+    /// NMT.
+    pub nmt: NmtSettings,
+    /// Heartbeat and guarding.
+    pub error_control: ErrorControlSettings,
     /// Expedited and segmented SDO transfer.
     pub sdo: OrdinaryTransfer,
     /// Abort codes, and what is said in their place.
@@ -215,6 +222,8 @@ impl Default for Behaviour {
             pdo: PdoBehaviour::default(),
             manners: Manners::default(),
             departs: Departures::default(),
+            nmt: NmtSettings::default(),
+            error_control: ErrorControlSettings::default(),
             sdo: OrdinaryTransfer::default(),
             abort_codes: &[],
             object_fault: None,

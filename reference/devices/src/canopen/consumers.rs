@@ -5,9 +5,9 @@ use std::time::Duration;
 use fieldproof_can::Frame;
 use fieldproof_link::Instant;
 
-use super::emergency::HEARTBEAT_LOST;
+use super::emergency::DeviceError;
 use super::objects::Objects;
-use super::{Abort, Address, Slave};
+use super::{Abort, Address, Behaviour, Slave};
 
 /// The consumer heartbeat time, an array.
 pub(super) const CONSUMER_TIME: u16 = 0x1016;
@@ -31,9 +31,20 @@ impl Consumers {
     /// | --- | --- |
     /// | 23 to 16 | node-ID; 0 and above 127: not used |
     /// | 15 to 0 | time in ms; 0: not used |
-    pub(super) fn read(objects: &Objects) -> Consumers {
+    pub(super) fn read(objects: &Objects, behaviour: &Behaviour, now: Instant) -> Consumers {
+        let settings = &behaviour.error_control;
         let entries = (1..=127).map_while(|sub| objects.number(Address::new(CONSUMER_TIME, sub)));
-        Consumers(entries.filter_map(consumer).collect())
+        let used = entries.take(settings.consumer_entries).filter_map(consumer);
+        let set = used.map(|consumer| {
+            let time = consumer.time * settings.consumer_percent / 100;
+            let until = (!settings.consumer_waits_for_first).then(|| now + time);
+            Consumer {
+                time,
+                until,
+                ..consumer
+            }
+        });
+        Consumers(set.collect())
     }
 
     pub(super) fn due(&self) -> Option<Instant> {
@@ -56,7 +67,12 @@ fn consumer(entry: u32) -> Option<Consumer> {
 ///
 /// # Errors
 /// Reserved bits are set, or another entry listens to the same node.
-pub(super) fn check(objects: &Objects, address: Address, entry: u32) -> Result<(), Abort> {
+pub(super) fn check(
+    objects: &Objects,
+    behaviour: &Behaviour,
+    address: Address,
+    entry: u32,
+) -> Result<(), Abort> {
     if entry >> 24 != 0 {
         return Err(Abort::INVALID_VALUE);
     }
@@ -68,27 +84,49 @@ pub(super) fn check(objects: &Objects, address: Address, entry: u32) -> Result<(
         let entry = objects.number(Address::new(CONSUMER_TIME, sub))?;
         consumer(entry)
     });
-    if others.any(|other| other.node == asked.node) {
+    let taken = others.any(|other| other.node == asked.node);
+    if taken && behaviour.error_control.consumer_entry_once {
         return Err(Abort::INCOMPATIBLE);
     }
     Ok(())
 }
 
 impl Slave {
+    fn heartbeat_lost(&self) -> DeviceError {
+        DeviceError {
+            code: self.behaviour.error_control.lost_heartbeat_code,
+            register_bit: 0x10,
+        }
+    }
+
     /// 1016h was written: what was listened to before is forgotten.
     pub(super) fn reconfigure_consumers(&mut self, now: Instant) {
-        let before = std::mem::replace(&mut self.consumers, Consumers::read(&self.objects));
-        for _ in before.0.iter().filter(|consumer| consumer.lost) {
-            self.set_error(now, HEARTBEAT_LOST, false);
+        let fresh = Consumers::read(&self.objects, &self.behaviour, now);
+        let before = std::mem::replace(&mut self.consumers, fresh);
+        let found_again = before.0.iter().filter(|consumer| consumer.lost).count();
+        if !self.behaviour.error_control.consumer_can_be_stopped {
+            let set = self.consumers.0.iter().map(|consumer| consumer.node);
+            let set: Vec<u8> = set.collect();
+            let stopped = before.0.into_iter();
+            let stopped = stopped.filter(|consumer| !set.contains(&consumer.node));
+            self.consumers.0.extend(stopped);
+        }
+        for _ in 0..found_again {
+            self.set_error(now, self.heartbeat_lost(), false);
         }
     }
 
     /// Another node's error control. Its boot-up is no heartbeat: it is waited for again.
     pub(super) fn hear(&mut self, now: Instant, node: u16, frame: &Frame) {
         let &[state] = frame.bytes() else { return };
+        let settings = &self.behaviour.error_control;
+        if state != 0x05 && !settings.consumer_takes_any_state {
+            return;
+        }
         let mut found_again = 0;
         for consumer in &mut self.consumers.0 {
-            if u16::from(consumer.node) != node {
+            let meant = u16::from(consumer.node) == node || !settings.consumer_compares_node;
+            if !meant || (consumer.lost && !settings.consumer_resumes) {
                 continue;
             }
             consumer.until = (state != 0).then(|| now + consumer.time);
@@ -97,25 +135,32 @@ impl Slave {
             }
         }
         for _ in 0..found_again {
-            self.set_error(now, HEARTBEAT_LOST, false);
+            self.set_error(now, self.heartbeat_lost(), false);
         }
     }
 
     pub(super) fn wake_consumers(&mut self, now: Instant) {
-        let mut lost = 0;
+        let once = self.behaviour.error_control.lost_heartbeat_reported_once;
+        let (mut lost, mut lost_again) = (0, 0);
         for consumer in &mut self.consumers.0 {
             if consumer.until.is_some_and(|until| until <= now) {
-                consumer.until = None;
-                consumer.lost = true;
-                lost += 1;
+                consumer.until = (!once).then(|| now + consumer.time);
+                if std::mem::replace(&mut consumer.lost, true) {
+                    lost_again += 1;
+                } else {
+                    lost += 1;
+                }
             }
         }
         if !self.behaviour.lost_heartbeat_noticed {
             return;
         }
         for _ in 0..lost {
-            self.set_error(now, HEARTBEAT_LOST, true);
+            self.set_error(now, self.heartbeat_lost(), true);
             self.communication_failed();
+        }
+        for _ in 0..lost_again {
+            self.report(now, self.heartbeat_lost());
         }
     }
 }

@@ -50,11 +50,6 @@ pub(super) const LIFE_GUARDING: DeviceError = DeviceError {
     code: 0x8130,
     register_bit: 0x10,
 };
-/// A heartbeat that is consumed is missing.
-pub(super) const HEARTBEAT_LOST: DeviceError = DeviceError {
-    code: 0x8130,
-    register_bit: 0x10,
-};
 /// A SYNC has a counter and should not, or the other way round.
 pub(super) const SYNC_LENGTH: DeviceError = DeviceError {
     code: 0x8240,

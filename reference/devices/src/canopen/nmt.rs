@@ -35,8 +35,9 @@ impl State {
     }
 
     /// Whether the service works in this state.
-    pub(crate) const fn permits(self, service: Service, behaviour: &Behaviour) -> bool {
-        match (self, service) {
+    pub(crate) fn permits(self, service: Service, behaviour: &Behaviour) -> bool {
+        let exchanged = behaviour.nmt.exchanged == Some((self, service));
+        let permits = match (self, service) {
             (_, Service::Lss) => true,
             (State::Initialising, _) => matches!(service, Service::BootUp),
             (_, Service::BootUp | Service::ErrorControl) => true,
@@ -51,7 +52,8 @@ impl State {
                 !behaviour.departs.emergency_in_operational_only
             }
             (State::PreOperational | State::Operational, _) => true,
-        }
+        };
+        permits != exchanged
     }
 }
 
@@ -71,8 +73,12 @@ impl Command {
     /// | 0 | 01h start, 02h stop, 80h enter pre-operational, 81h reset node, 82h reset communication |
     /// | 1 | node-ID; 0 means all |
     pub(crate) fn of(frame: &Frame, node: u8, behaviour: &Behaviour) -> Option<Command> {
-        let &[command, addressed] = frame.bytes() else {
-            return None;
+        let (command, addressed) = match *frame.bytes() {
+            [command, addressed] => (command, addressed),
+            [command, addressed, ..] if behaviour.nmt.long_commands_taken => (command, addressed),
+            [_, _, _, ..] if behaviour.nmt.long_commands_reset => (0x81, node),
+            [command] if behaviour.nmt.one_byte_taken => (command, 0),
+            _ => return None,
         };
         let meant = match behaviour.nmt_address {
             NmtAddress::All => addressed == 0 || addressed == node,

@@ -16,6 +16,8 @@ pub(crate) struct Profile {
     pub(crate) produces_sync: bool,
     /// It answers node guarding.
     pub(crate) guarding: bool,
+    /// It listens to the heartbeats of the nodes in 1016h.
+    pub(crate) consumes_heartbeats: bool,
     /// What makes an event-driven TPDO leave.
     pub(crate) transmit_event: TransmitEvent,
     /// The lowest transmission type that a TPDO takes: 0, or 1 without acyclic ones.
@@ -27,8 +29,7 @@ pub(crate) struct Profile {
     pub(crate) node_object: Option<Address>,
     pub(crate) bit_rate_object: Option<Address>,
     /// It has what CiA 301 and CiA 305 leave to a device: transmission types 252 and 253, dummies in a mapping, late
-    /// RPDOs, a counter in SYNC, TIME, heartbeat consumers, error behaviour, a second SDO server, rules for every
-    /// COB-ID; and LSS that activates a bit timing and finds slaves.
+    /// RPDOs, a counter in SYNC, TIME, a second SDO server, rules for every COB-ID; and LSS that activates a bit timing and finds slaves.
     pub(crate) complete: bool,
     /// The TIME_OF_DAY that a TIME sets.
     pub(crate) clock_object: Option<Address>,

@@ -36,8 +36,10 @@ impl Slave {
         self.identified = 0;
         self.scanned = 0;
         self.servers.clear();
+        if self.profile.consumes_heartbeats {
+            self.consumers = Consumers::read(&self.objects, &self.behaviour, now);
+        }
         if self.profile.complete {
-            self.consumers = Consumers::read(&self.objects);
             self.read_servers();
         }
     }

@@ -1,6 +1,7 @@
 //! The slave as a whole: what it holds, what arrives, when it wants to be woken, what a reset does.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use fieldproof_can::{Frame, Id};
@@ -23,8 +24,7 @@ use super::time::Clock;
 use super::tpdo::{self, Tpdo};
 use super::{Address, Application, Behaviour, Profile, State};
 
-const ALL: std::ops::RangeInclusive<u16> = 0x0000..=0xFFFF;
-const COMMUNICATION: std::ops::RangeInclusive<u16> = 0x1000..=0x1FFF;
+const ALL: RangeInclusive<u16> = 0x0000..=0xFFFF;
 const IDENTITY: u16 = 0x1018;
 /// The node-ID of a slave that has none yet.
 const NO_NODE: u8 = 255;
@@ -146,6 +146,9 @@ impl Slave {
         }
         let (raw, node) = match frame.id() {
             Id::Standard(id) => (id.raw(), u16::from(self.node)),
+            Id::Extended(id) if id.raw() == 0 && self.behaviour.nmt.extended_identifier_taken => {
+                (0, u16::from(self.node))
+            }
             Id::Extended(id) if !self.behaviour.pdo.extended_frames_passed_over => {
                 let [low, high, ..] = (id.raw() & 0x7FF).to_le_bytes();
                 let identifier = u16::from_le_bytes([low, high]);
@@ -164,8 +167,8 @@ impl Slave {
             if let Some(command) = Command::of(frame, self.node, &self.behaviour) {
                 self.command(now, command, application);
             }
-        } else if raw == 0x700 + node && frame.is_remote() {
-            self.guard(now);
+        } else if frame.is_remote() && self.is_guarded_by(raw) {
+            self.guard(now, frame);
         } else if frame.is_remote() && !self.takes_for_sync(raw) {
             self.fetch_tpdo(now, raw);
         } else if self.sync.identifier == Some(raw) {
@@ -265,7 +268,8 @@ impl Slave {
         self.powered = on;
         self.queue.clear();
         if on {
-            self.reset_node(now, application);
+            self.error_control = ErrorControl::default();
+            self.reset_node(now, ALL, application);
         } else {
             self.boot_at = None;
             self.state = State::Initialising;
@@ -276,11 +280,28 @@ impl Slave {
     }
 
     fn command(&mut self, now: Instant, command: Command, application: &mut dyn Application) {
+        let settings = &self.behaviour.nmt;
+        if settings.ignored == Some((self.state, command)) {
+            return;
+        }
         match command {
-            Command::Enter(state) => self.enter(now, state),
+            Command::Enter(state) => {
+                let boots = settings.boot_up_repeated && state == State::PreOperational;
+                self.enter(now, state);
+                if boots {
+                    self.send_boot_up(now);
+                }
+            }
             _ if self.behaviour.departs.parameters_outlive_reset => self.initialise(now),
-            Command::ResetNode => self.reset_node(now, application),
-            Command::ResetCommunication => self.reset_communication(now),
+            Command::ResetNode => {
+                let restored = settings.restored_by_reset_node.clone();
+                self.reset_node(now, restored, application);
+            }
+            Command::ResetCommunication => {
+                let silent = !settings.boot_up_after_reset_communication;
+                self.reset_communication(now);
+                self.error_control.boots_silently = silent;
+            }
         }
     }
 
@@ -303,12 +324,17 @@ impl Slave {
     }
 
     /// Everything as after power-on: what is in non-volatile memory, else the defaults.
-    fn reset_node(&mut self, now: Instant, application: &mut dyn Application) {
+    fn reset_node(
+        &mut self,
+        now: Instant,
+        restored: RangeInclusive<u16>,
+        application: &mut dyn Application,
+    ) {
         self.node = self.memory.node;
         self.pending_node = self.memory.node;
         self.bit_rate = self.memory.bit_rate;
         self.pending_bit_rate = self.memory.bit_rate;
-        self.objects.load(ALL, self.node, &self.memory.values);
+        self.objects.load(restored, self.node, &self.memory.values);
         application.reset(&mut self.objects);
         self.initialise(now);
     }
@@ -317,8 +343,8 @@ impl Slave {
     pub(super) fn reset_communication(&mut self, now: Instant) {
         self.node = self.pending_node;
         let kept = self.kept_pdo_parameters();
-        self.objects
-            .load(COMMUNICATION, self.node, &self.memory.values);
+        let restored = self.behaviour.nmt.restored_by_reset_communication.clone();
+        self.objects.load(restored, self.node, &self.memory.values);
         for (address, value) in kept {
             self.objects.set(address, &value);
         }
@@ -374,7 +400,7 @@ impl Slave {
         self.queue.clear();
         self.sdo.reset(&self.behaviour.sdo);
         self.sync = Sync::default();
-        self.error_control = ErrorControl::default();
+        self.error_control = self.error_control.after_reset(&self.behaviour);
         self.initialise_services(now);
         self.rpdos = pdo::rpdos(&self.objects, &self.behaviour);
         self.tpdos = tpdo::tpdos(&self.objects, &self.behaviour);
@@ -383,15 +409,32 @@ impl Slave {
 
     fn boot(&mut self, now: Instant) {
         self.boot_at = None;
-        if self.behaviour.boot_up
-            && let Some(frame) = Frame::data(identifier(0x700 + u16::from(self.node)), &[0])
-        {
-            self.queue.push(now, Service::BootUp, frame);
+        if self.behaviour.boot_up && !self.error_control.boots_silently {
+            self.send_boot_up(now);
         }
         self.enter(now, State::PreOperational);
         self.start_error_control(now);
         self.start_sync(now);
         self.reconfigure_time(now);
+        if self.behaviour.nmt.starts_itself {
+            self.enter(now, State::Operational);
+        }
+    }
+
+    /// | byte | holds |
+    /// | --- | --- |
+    /// | 0 | 0 |
+    fn send_boot_up(&mut self, now: Instant) {
+        let settings = &self.behaviour.nmt;
+        let heartbeat = [State::PreOperational.code(&self.behaviour)];
+        let before = settings.heartbeat_before_boot_up.then_some(heartbeat);
+        let boot_ups = (0..settings.boot_ups).map(|_| [settings.boot_up_byte]);
+        for bytes in before.into_iter().chain(boot_ups) {
+            let frame = Frame::data(identifier(0x700 + u16::from(self.node)), &bytes);
+            if let Some(frame) = frame {
+                self.queue.push(now, Service::BootUp, frame);
+            }
+        }
     }
 
     pub(super) fn has_node(&self) -> bool {

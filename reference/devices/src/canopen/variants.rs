@@ -25,8 +25,11 @@ pub(crate) const REMOTE_FRAMES_IGNORED: Variant = Variant {
 
 pub(crate) const HEARTBEAT_AT_ONCE: Variant = Variant {
     name: "heartbeat-at-once",
-    words: "sends its first heartbeat when 1017h is written, the next a period later",
-    apply: |behaviour| behaviour.canopen.heartbeat_on_write = true,
+    words: "sends its first heartbeat when 1017h is written or right behind its boot-up, the next a period later",
+    apply: |behaviour| {
+        behaviour.canopen.heartbeat_on_write = true;
+        behaviour.canopen.error_control.heartbeat_with_boot_up = true;
+    },
 };
 
 pub(crate) const SMALL_BLOCKS: Variant = Variant {
@@ -120,4 +123,27 @@ pub(crate) const LONG_PDO_UNREPORTED: Variant = Variant {
     name: "long-pdo-unreported",
     words: "uses the first bytes of an RPDO that is too long without an EMCY: 8220h is optional",
     apply: |behaviour| behaviour.canopen.manners.long_pdo_unreported = true,
+};
+
+pub(crate) const LONG_NMT_COMMANDS: Variant = Variant {
+    name: "long-nmt-commands",
+    words: "takes an NMT command of more than two bytes by its first two: CiA 301 does not say what becomes of it",
+    apply: |behaviour| behaviour.canopen.nmt.long_commands_taken = true,
+};
+
+pub(crate) const GUARDED_BESIDE_HEARTBEAT: Variant = Variant {
+    name: "guarded-beside-heartbeat",
+    words: "answers guarding requests while it sends heartbeats: it need not, and misses no master then",
+    apply: |behaviour| {
+        behaviour
+            .canopen
+            .error_control
+            .guarding_answered_beside_heartbeat = true
+    },
+};
+
+pub(crate) const GUARDED_BY_ONE_BYTE: Variant = Variant {
+    name: "guarded-by-one-byte",
+    words: "ignores a guarding request whose length is not 1: the remote frame has the length of what it asks for",
+    apply: |behaviour| behaviour.canopen.error_control.guarding_answers_any_length = false,
 };

@@ -123,7 +123,7 @@ impl Slave {
             let present = self.objects.number(address).unwrap_or(0);
             sync::check(&self.profile, &self.behaviour.departs, present, number)?;
         } else if index == consumers::CONSUMER_TIME && address.sub() != 0 {
-            consumers::check(&self.objects, address, number)?;
+            consumers::check(&self.objects, &self.behaviour, address, number)?;
         } else if index == POSITION_LIMITS {
             self.check_position_limits(address, number)?;
         } else if index == ERROR_HISTORY {
@@ -210,12 +210,12 @@ impl Slave {
         } else if address == PRODUCER_TIME {
             self.reconfigure_heartbeat(now);
         } else if address == GUARD_TIME || address == LIFE_TIME_FACTOR {
-            self.reconfigure_guarding();
+            self.reconfigure_guarding(now);
         } else if Some(address) == self.profile.clock_object {
             self.set_clock(now);
         } else if address == time::COB_ID {
             self.reconfigure_time(now);
-        } else if self.profile.complete && index == consumers::CONSUMER_TIME {
+        } else if self.profile.consumes_heartbeats && index == consumers::CONSUMER_TIME {
             self.reconfigure_consumers(now);
         } else if self.profile.complete && ADDITIONAL_SERVERS.contains(&index) {
             self.reconfigure_server(index);

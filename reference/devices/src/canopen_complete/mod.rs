@@ -11,7 +11,8 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, communication_faults, faults, pdo_faults, sdo_faults, service_faults,
+    block_faults, communication_faults, error_control_faults, faults, nmt_faults, pdo_faults,
+    sdo_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -48,6 +49,10 @@ const OWN_FAULTS: &[Fault] = &[
 ];
 const FAULTS: [Fault;
     faults::COMMON.len()
+        + nmt_faults::COMMON.len()
+        + nmt_faults::REST.len()
+        + error_control_faults::COMMON.len()
+        + error_control_faults::REST.len()
         + service_faults::ALL.len()
         + communication_faults::ALL.len()
         + OWN_FAULTS.len()
@@ -59,6 +64,10 @@ const FAULTS: [Fault;
         + block_faults::BLOCK.len()
         + pdo_faults::ALL.len()] = all_of(&[
     faults::COMMON,
+    nmt_faults::COMMON,
+    nmt_faults::REST,
+    error_control_faults::COMMON,
+    error_control_faults::REST,
     service_faults::ALL,
     communication_faults::ALL,
     OWN_FAULTS,
@@ -84,6 +93,9 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::TPDO_WITH_FIRST_SYNC,
         canopen::variants::NO_TPDO_ON_START,
         canopen::variants::HEARTBEAT_AT_ONCE,
+        canopen::variants::LONG_NMT_COMMANDS,
+        canopen::variants::GUARDED_BESIDE_HEARTBEAT,
+        canopen::variants::GUARDED_BY_ONE_BYTE,
         canopen::variants::SLOW,
         canopen::variants::GENERAL_ABORT_CODES,
         canopen::variants::CAREFUL_SDO,
@@ -122,6 +134,7 @@ fn profile() -> Profile {
         boot_time: Duration::from_millis(5),
         produces_sync: true,
         guarding: true,
+        consumes_heartbeats: true,
         transmit_event: TransmitEvent::Change,
         lowest_transmit_type: 0,
         lss: Some(LssAbilities {
@@ -217,6 +230,10 @@ impl Participant for Complete {
 
 #[cfg(test)]
 mod communication_tests;
+#[cfg(test)]
+mod error_control_tests;
+#[cfg(test)]
+mod nmt_tests;
 #[cfg(test)]
 mod pdo_tests;
 #[cfg(test)]

@@ -11,7 +11,10 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
 };
 
-use crate::canopen::{self, Address, Factory, Profile, TransmitEvent, faults};
+use crate::canopen::{
+    self, Address, Factory, Profile, TransmitEvent, error_control_faults, faults, nmt_faults,
+    service_faults,
+};
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
@@ -29,6 +32,10 @@ const SERIAL: usize = 1;
 
 /// The faults of this device alone.
 const OWN_FAULTS: &[Fault] = &[
+    nmt_faults::APPLICATION_KEPT_BY_RESET_NODE,
+    nmt_faults::COMMUNICATION_KEPT_BY_RESET_COMMUNICATION,
+    error_control_faults::LIFE_TIME_WITHOUT_FACTOR,
+    service_faults::LOST_MASTER_UNNOTICED,
     faults::MAPPING_ENTRY_BYTE_ORDER,
     faults::GUARDING_TOGGLE_STUCK,
     faults::SYNC_NOT_STOPPED,
@@ -37,11 +44,15 @@ const OWN_FAULTS: &[Fault] = &[
 ];
 const FAULTS: [Fault;
     faults::COMMON.len()
+        + nmt_faults::COMMON.len()
+        + error_control_faults::COMMON.len()
         + modbus::faults::COMMON.len()
         + OWN_FAULTS.len()
         + drive::faults::COMMON.len()
         + drive::faults::VALUES.len()] = all_of(&[
     faults::COMMON,
+    nmt_faults::COMMON,
+    error_control_faults::COMMON,
     modbus::faults::COMMON,
     OWN_FAULTS,
     drive::faults::COMMON,
@@ -112,6 +123,7 @@ fn profile() -> Profile {
         boot_time: Duration::from_millis(20),
         produces_sync: true,
         guarding: true,
+        consumes_heartbeats: true,
         transmit_event: TransmitEvent::Change,
         lowest_transmit_type: 0,
         lss: None,

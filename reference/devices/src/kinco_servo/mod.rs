@@ -9,7 +9,10 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
 };
 
-use crate::canopen::{self, Address, Factory, Profile, TransmitEvent, faults};
+use crate::canopen::{
+    self, Address, Factory, Profile, TransmitEvent, error_control_faults, faults, nmt_faults,
+    service_faults,
+};
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
@@ -24,6 +27,11 @@ const PORT: usize = 0;
 
 /// The faults of this device alone.
 const OWN_FAULTS: &[Fault] = &[
+    nmt_faults::EMERGENCY_SENT_IN_STOPPED,
+    nmt_faults::APPLICATION_KEPT_BY_RESET_NODE,
+    error_control_faults::LIFE_TIME_WITHOUT_FACTOR,
+    error_control_faults::CONSUMER_TIME_HALVED,
+    service_faults::LOST_HEARTBEAT_UNNOTICED,
     faults::TOGGLE_NOT_ALTERNATED,
     faults::SDO_ANSWERED_IN_STOPPED,
     faults::GUARDING_TOGGLE_STUCK,
@@ -31,10 +39,14 @@ const OWN_FAULTS: &[Fault] = &[
 ];
 const FAULTS: [Fault;
     faults::COMMON.len()
+        + nmt_faults::COMMON.len()
+        + error_control_faults::COMMON.len()
         + OWN_FAULTS.len()
         + drive::faults::COMMON.len()
         + drive::faults::OPTIONS.len()] = all_of(&[
     faults::COMMON,
+    nmt_faults::COMMON,
+    error_control_faults::COMMON,
     OWN_FAULTS,
     drive::faults::COMMON,
     drive::faults::OPTIONS,
@@ -101,6 +113,7 @@ fn profile() -> Profile {
         boot_time: Duration::from_millis(8),
         produces_sync: false,
         guarding: true,
+        consumes_heartbeats: true,
         transmit_event: TransmitEvent::Change,
         lowest_transmit_type: 0,
         lss: None,

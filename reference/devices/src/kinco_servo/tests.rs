@@ -175,7 +175,7 @@ fn guarding_toggles_and_a_lost_master_is_reported() {
         < 081#3081110000000000
         > 701#R
         < 081#0000000000000000
-        < 701#05
+        < 701#7F
         ",
     );
 }

@@ -15,7 +15,10 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
 };
 
-use crate::canopen::{self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{
+    self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, error_control_faults,
+    faults, nmt_faults,
+};
 use crate::catalogue::{
     DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
@@ -40,6 +43,7 @@ const SERIAL: usize = 1;
 
 /// The faults of this device alone.
 const OWN_FAULTS: &[Fault] = &[
+    error_control_faults::GUARDING_TOGGLE_NOT_RESTARTED,
     faults::TOGGLE_NOT_ALTERNATED,
     faults::SDO_ANSWERED_IN_STOPPED,
     faults::GUARDING_TOGGLE_STUCK,
@@ -60,13 +64,19 @@ const OWN_FAULTS: &[Fault] = &[
 ];
 const ENCODER_FAULTS: &[Fault] = behaviour::FAULTS;
 const FAULTS: [Fault;
-    faults::COMMON.len() + modbus::faults::COMMON.len() + OWN_FAULTS.len() + ENCODER_FAULTS.len()] =
-    all_of(&[
-        faults::COMMON,
-        modbus::faults::COMMON,
-        OWN_FAULTS,
-        ENCODER_FAULTS,
-    ]);
+    faults::COMMON.len()
+        + nmt_faults::COMMON.len()
+        + error_control_faults::COMMON.len()
+        + modbus::faults::COMMON.len()
+        + OWN_FAULTS.len()
+        + ENCODER_FAULTS.len()] = all_of(&[
+    faults::COMMON,
+    nmt_faults::COMMON,
+    error_control_faults::COMMON,
+    modbus::faults::COMMON,
+    OWN_FAULTS,
+    ENCODER_FAULTS,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -129,6 +139,7 @@ fn profile(behaviour: &Behaviour) -> Profile {
         boot_time: Duration::from_millis(12),
         produces_sync: false,
         guarding: true,
+        consumes_heartbeats: false,
         transmit_event: TransmitEvent::TimerOnly,
         lowest_transmit_type: 0,
         lss: Some(LssAbilities {

@@ -13,7 +13,9 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
 };
 
-use crate::canopen::{self, Address, Factory, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{
+    self, Address, Factory, Profile, Slave, TransmitEvent, error_control_faults, faults, nmt_faults,
+};
 use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of};
 use crate::inverter;
 pub use behaviour::{Behaviour, Lost, RunState, TargetSign};
@@ -57,8 +59,16 @@ const OWN_FAULTS: &[Fault] = &[
     behaviour::STATION_UNCHECKED,
     behaviour::EXCEPTION_AS_VALUE,
 ];
-const FAULTS: [Fault; faults::COMMON.len() + OWN_FAULTS.len()] =
-    all_of(&[faults::COMMON, OWN_FAULTS]);
+const FAULTS: [Fault;
+    faults::COMMON.len()
+        + nmt_faults::COMMON.len()
+        + error_control_faults::COMMON.len()
+        + OWN_FAULTS.len()] = all_of(&[
+    faults::COMMON,
+    nmt_faults::COMMON,
+    error_control_faults::COMMON,
+    OWN_FAULTS,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -111,6 +121,7 @@ fn profile() -> Profile {
         boot_time: Duration::from_millis(15),
         produces_sync: false,
         guarding: false,
+        consumes_heartbeats: false,
         transmit_event: TransmitEvent::TimerOnly,
         lowest_transmit_type: 1,
         lss: None,

@@ -132,7 +132,8 @@ impl Slave {
     /// | 1 to 3 | index (low byte first) and sub-index where a transfer begins or is aborted |
     /// | 4 to 7 | data of an expedited transfer, or the size of a segmented one |
     pub(super) fn serve(&mut self, now: Instant, frame: &Frame, application: &mut dyn Application) {
-        if !self.state.permits(Service::Sdo, &self.behaviour) {
+        let silent = !self.state.permits(Service::Sdo, &self.behaviour);
+        if silent && !self.behaviour.nmt.requests_done_in_stopped {
             return;
         }
         let Some(request) = self.whole_request(now, frame) else {
@@ -147,6 +148,9 @@ impl Slave {
             self.abort(now, address, abort);
         }
         self.await_request(now);
+        if silent {
+            self.queue.retain(|service| service != Service::Sdo);
+        }
     }
 
     /// A request has 8 bytes.

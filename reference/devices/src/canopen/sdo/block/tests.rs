@@ -91,6 +91,7 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
         boot_time: Duration::from_millis(8),
         produces_sync: false,
         guarding: false,
+        consumes_heartbeats: false,
         transmit_event: TransmitEvent::TimerOnly,
         lowest_transmit_type: 0,
         lss: None,
