@@ -241,9 +241,9 @@ impl RegisterTable {
     ///
     /// # Errors
     /// The value that has one of its addresses already.
-    pub fn insert(&mut self, register: Register) -> Result<(), Register> {
+    pub fn insert(&mut self, register: Register) -> Result<(), Box<Register>> {
         match self.in_the_way(&register) {
-            Some(other) => Err(other.clone()),
+            Some(other) => Err(Box::new(other.clone())),
             None => {
                 self.registers.insert(register.address, register);
                 Ok(())

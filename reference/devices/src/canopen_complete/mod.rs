@@ -47,7 +47,7 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_SERIAL_IGNORED,
     faults::LSS_BIT_TIMING_MISSING,
 ];
-const FAULTS: [Fault;
+static FAULTS: [Fault;
     faults::COMMON.len()
         + nmt_faults::COMMON.len()
         + nmt_faults::REST.len()

@@ -42,7 +42,7 @@ const OWN_FAULTS: &[Fault] = &[
     faults::EMERGENCY_WITHOUT_REGISTER,
     modbus::faults::WRITE_MULTIPLE_FORGETS,
 ];
-const FAULTS: [Fault;
+static FAULTS: [Fault;
     faults::COMMON.len()
         + nmt_faults::COMMON.len()
         + error_control_faults::COMMON.len()

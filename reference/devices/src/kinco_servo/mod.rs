@@ -37,7 +37,7 @@ const OWN_FAULTS: &[Fault] = &[
     faults::GUARDING_TOGGLE_STUCK,
     faults::MAPPING_ENTRY_BYTE_ORDER,
 ];
-const FAULTS: [Fault;
+static FAULTS: [Fault;
     faults::COMMON.len()
         + nmt_faults::COMMON.len()
         + error_control_faults::COMMON.len()

@@ -63,7 +63,7 @@ const OWN_FAULTS: &[Fault] = &[
     modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
 ];
 const ENCODER_FAULTS: &[Fault] = behaviour::FAULTS;
-const FAULTS: [Fault;
+static FAULTS: [Fault;
     faults::COMMON.len()
         + nmt_faults::COMMON.len()
         + error_control_faults::COMMON.len()

@@ -250,7 +250,7 @@ impl Registers for CompleteRegisters {
     fn read_discrete_input(&self, input: u16) -> Result<bool, Exception> {
         exists(matches!(input, 0..BITS | LAST..))?;
         let set = self.discrete_inputs.get(&input).copied();
-        Ok(set.unwrap_or(input % 3 == 0))
+        Ok(set.unwrap_or(input.is_multiple_of(3)))
     }
 
     fn exception_status(&self) -> u8 {

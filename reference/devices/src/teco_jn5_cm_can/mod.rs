@@ -59,7 +59,7 @@ const OWN_FAULTS: &[Fault] = &[
     behaviour::STATION_UNCHECKED,
     behaviour::EXCEPTION_AS_VALUE,
 ];
-const FAULTS: [Fault;
+static FAULTS: [Fault;
     faults::COMMON.len()
         + nmt_faults::COMMON.len()
         + error_control_faults::COMMON.len()
