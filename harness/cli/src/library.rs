@@ -4,6 +4,7 @@ mod benches;
 mod identity;
 mod near;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,8 +17,8 @@ use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_run::{fill, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
-use fieldproof_suite::model::{Effect, StimulusName};
-use fieldproof_suite::{Diagnostic, SourceFile, Suite};
+use fieldproof_suite::model::{Effect, Located, StimulusName};
+use fieldproof_suite::{Diagnostic, Position, SourceFile, Suite};
 
 use crate::bench;
 use crate::complaint::{Complaint, with_choice};
@@ -26,6 +27,9 @@ use crate::input;
 use crate::options::Selection;
 use crate::problems;
 use benches::is_bench;
+
+/// Index and sub-index.
+const SERIAL_NUMBER: (u16, u8) = (0x1018, 4);
 
 /// A device with everything that is known of it.
 #[derive(Clone)]
@@ -62,6 +66,24 @@ impl Device {
     pub fn is_simulated(&self) -> bool {
         let links = self.place.as_ref().map(|place| &place.links);
         links.is_none_or(|links| links.values().all(|link| link.kind == LinkKind::Sim))
+    }
+
+    /// What is claimed of the unit that is tested: the serial number of a simulated one is that of its EDS.
+    pub(crate) fn description_of_unit(&self) -> Cow<'_, DeviceDescription> {
+        let serial_number = self.dictionary.as_ref().and_then(|dictionary| {
+            let entry = dictionary.entry(SERIAL_NUMBER.0, SERIAL_NUMBER.1)?;
+            let bytes = entry.default_bytes(0)?.try_into().ok()?;
+            Some(u32::from_le_bytes(bytes))
+        });
+        if !self.is_simulated() || self.description.identity.serial_number.is_some() {
+            return Cow::Borrowed(&self.description);
+        }
+        let mut description = self.description.clone();
+        description.identity.serial_number = serial_number.map(|value| Located {
+            value,
+            at: Position::default(),
+        });
+        Cow::Owned(description)
     }
 
     /// The faults its reference device can have; nothing can be switched on in a real device.

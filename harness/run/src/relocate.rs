@@ -23,8 +23,9 @@ fn relocate_step(step: &mut Located<Step>, from: NodeId, to: NodeId) {
     match &mut step.value {
         Step::Send(send) => send.frame = FrameText(relocate_frame(send.frame.0, from, to)),
         Step::Expect(expect) => {
-            let pattern = expect.frame.0;
-            expect.frame = PatternText(pattern.with_id(relocate_id(pattern.id(), from, to)));
+            for PatternText(pattern) in [&mut expect.frame].into_iter().chain(&mut expect.or) {
+                *pattern = pattern.with_id(relocate_id(pattern.id(), from, to));
+            }
         }
         Step::ExpectSilence(silence) => {
             for id in &mut silence.of {

@@ -9,7 +9,7 @@ use fieldproof_can::{Frame, StandardId};
 use fieldproof_devices::{DeviceKind, Settings, kind, kinds};
 use fieldproof_link::{Instant, Outbox, Participant, Reception, Stimulus, Transmission};
 
-const SUITES: [&str; 12] = [
+const SUITES: [&str; 13] = [
     "boot-up",
     "emergency",
     "error-control",
@@ -18,6 +18,7 @@ const SUITES: [&str; 12] = [
     "modbus",
     "nmt",
     "pdo",
+    "robustness",
     "sdo",
     "store",
     "sync",

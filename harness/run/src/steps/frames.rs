@@ -5,6 +5,7 @@ use std::time::Duration;
 use fieldproof_can::{Frame, Id, Pattern};
 use fieldproof_link::{Instant, Origin, PortIndex};
 use fieldproof_suite::model::{Expect, ExpectSilence, Send};
+use fieldproof_suite::scalar::PatternText;
 use fieldproof_wire::canopen::{Service, identify};
 use fieldproof_wire::describe::describe_frame;
 
@@ -26,8 +27,9 @@ impl Tester<'_> {
         let Some((frame, received)) = self.first_frame(pattern.id(), within)? else {
             return Err(self.nothing_came(pattern, within));
         };
-        if !pattern.matches(&frame) {
-            return Err(wrong_frame(pattern, &frame));
+        let is_other = |other: &PatternText| other.0.matches(&frame);
+        if !pattern.matches(&frame) && !step.or.iter().any(is_other) {
+            return Err(wrong_frame_of(step, &frame));
         }
         self.measure_response(name, &received, within)?;
         for rule in &step.decode {
@@ -151,6 +153,14 @@ pub(crate) const fn main_role(protocol: fieldproof_suite::model::Protocol) -> &'
         }
         fieldproof_suite::model::Protocol::Modbus => SERIAL,
     }
+}
+
+/// The same where something else may come, too.
+fn wrong_frame_of(step: &Expect, frame: &Frame) -> Stop {
+    let others = step.or.iter();
+    others.fold(wrong_frame(&step.frame.0, frame), |stop, other| {
+        stop.with_note(format!("{} would do as well", other.0))
+    })
 }
 
 /// A frame came under the right identifier that is not the one expected.

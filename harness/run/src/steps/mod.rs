@@ -1,6 +1,7 @@
 //! What each verb does. One file a family of verbs.
 
 mod bench;
+mod flood;
 mod frames;
 mod modbus;
 mod nmt;
@@ -40,6 +41,7 @@ impl Tester<'_> {
             Step::ExpectBytes(step) => self.expect_bytes(step),
             Step::Stimulate(step) => self.stimulate(step),
             Step::SetBitRate(bit_rate) => self.set_bit_rate(*bit_rate),
+            Step::Flood(flood) => self.flood(flood),
             Step::Repeat(repeat) => self.repeat(repeat),
         }
     }
@@ -69,6 +71,7 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
         Step::Modbus(step) => step.check.as_deref(),
         Step::ExpectBytes(step) => step.check.as_deref(),
         Step::Send(_)
+        | Step::Flood(_)
         | Step::Nmt(_)
         | Step::NmtEnter(_)
         | Step::ExpectBootUp(_)

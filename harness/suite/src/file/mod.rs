@@ -4,6 +4,7 @@ mod bench;
 mod can;
 mod case;
 mod device;
+mod flood;
 mod modbus;
 mod sdo;
 mod short;
@@ -15,11 +16,13 @@ pub(crate) use bench::*;
 pub(crate) use can::*;
 pub(crate) use case::*;
 pub(crate) use device::*;
+pub(crate) use flood::*;
 pub(crate) use modbus::*;
 pub(crate) use sdo::*;
 pub(crate) use stimulate::*;
 
 crate::forms::schema_of!(
+    crate::model::Flood: FloodFile,
     crate::model::Sync: SyncFile,
     crate::model::ExpectTpdo: ExpectTpdoFile,
     crate::model::SdoRead: SdoReadFile,

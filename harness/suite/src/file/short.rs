@@ -27,7 +27,7 @@ macro_rules! short_form {
 
 short_form! {
     Send from FrameText: |frame| Send { frame };
-    Expect from PatternText: |frame| Expect { frame, within: None, decode: Vec::new(), check: None };
+    Expect from PatternText: |frame| Expect { frame, or: Vec::new(), within: None, decode: Vec::new(), check: None };
     ExpectSilence from Time: |time| ExpectSilence {
         lasting: time.0,
         of: Vec::new(),

@@ -101,6 +101,7 @@ fn can_fail(step: &Step) -> bool {
         | Step::SdoWrite(_)
         | Step::Modbus(_) => true,
         Step::Send(_)
+        | Step::Flood(_)
         | Step::Nmt(_)
         | Step::NmtEnter(_)
         | Step::Sync(_)

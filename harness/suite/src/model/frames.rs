@@ -7,7 +7,9 @@ use serde::Deserialize;
 
 use crate::file::DecodeFile;
 use crate::forms::OneOrMany;
-use crate::read_with::{can_ids, decode_big_endian, decode_little_endian, optional_time, time};
+use crate::read_with::{
+    can_ids, decode_big_endian, decode_little_endian, one_or_many, optional_time, time,
+};
 use crate::scalar::{
     BytePatternText, Bytes, CanId, Decimal, FrameText, ObjectAddress, PatternText, Time,
 };
@@ -26,6 +28,10 @@ pub struct Send {
 pub struct Expect {
     /// What must come.
     pub frame: PatternText,
+    /// What may come in its place, with the same identifier.
+    #[serde(default, deserialize_with = "one_or_many")]
+    #[schemars(with = "OneOrMany<PatternText>")]
+    pub or: Vec<PatternText>,
     /// How long after the last send; else what the description promises.
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]

@@ -2,6 +2,7 @@
 //! reads into these.
 
 mod canopen;
+mod flood;
 mod frames;
 mod modbus;
 mod query;
@@ -11,6 +12,7 @@ mod stimulate;
 mod suite;
 
 pub use canopen::*;
+pub use flood::*;
 pub use frames::*;
 pub use modbus::*;
 pub use query::*;

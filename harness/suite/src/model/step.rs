@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::{
     Expect, ExpectBootUp, ExpectBytes, ExpectHeartbeat, ExpectSilence, ExpectState, ExpectTpdo,
-    Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync,
+    Flood, Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync,
     Stimulate, Sync,
 };
 use crate::forms::{either, either_schema};
@@ -92,6 +92,8 @@ pub enum Step {
         #[schemars(with = "BitRate")]
         u32,
     ),
+    /// `flood: {frames: 200, ids: [101-17F]}`: many frames drawn by chance, the same for the same seed.
+    Flood(Flood),
     /// `repeat: {times: 128, steps: [...]}`: for what shows only the hundredth time.
     Repeat(Repeat),
 }

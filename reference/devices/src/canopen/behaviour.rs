@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::BlockTransfer;
+use super::{BlockTransfer, LssDepartures, Robustness};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -22,6 +22,10 @@ pub struct Behaviour {
     pub heartbeat_on_write: bool,
     /// SDO block transfer.
     pub block: BlockTransfer,
+    /// LSS.
+    pub lss: LssDepartures,
+    /// What frames that mean nothing do to it.
+    pub robustness: Robustness,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -196,6 +200,8 @@ impl Default for Behaviour {
             tpdo_with_first_sync: false,
             heartbeat_on_write: false,
             block: BlockTransfer::default(),
+            lss: LssDepartures::default(),
+            robustness: Robustness::default(),
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,

@@ -4,6 +4,7 @@ use fieldproof_link::Instant;
 
 use super::consumers::Consumers;
 use super::emergency::Errors;
+use super::lss::LssWork;
 use super::pdo;
 use super::sdo::Server;
 use super::time::Clock;
@@ -19,8 +20,7 @@ impl Slave {
         self.set_clock(now);
         self.consequence = None;
         self.switch = None;
-        self.identified = 0;
-        self.scanned = 0;
+        self.lss_work = LssWork::default();
         self.second_sdo = (None, Server::default());
         if self.profile.complete {
             self.consumers = Consumers::read(&self.objects);

@@ -3,18 +3,19 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fieldproof_can::{Frame, Id};
+use fieldproof_can::Frame;
 use fieldproof_link::{Instant, Line, NotOffered, Outbox};
 
 use super::consumers::Consumers;
 use super::emergency::Errors;
 use super::error_control::ErrorControl;
-use super::lss::{self, BitTimingSwitch, LssState};
+use super::lss::{self, BitTimingSwitch, LssState, LssWork, NO_NODE};
 use super::memory::Memory;
 use super::nmt::Command;
 use super::objects::Objects;
 use super::pdo::{self, Rpdo};
 use super::queue::{Queue, Service, identifier};
+use super::robustness::Strain;
 use super::sdo::Server;
 use super::sync::Sync;
 use super::time::Clock;
@@ -24,8 +25,6 @@ use super::{Address, Application, Behaviour, Profile, State};
 const ALL: std::ops::RangeInclusive<u16> = 0x0000..=0xFFFF;
 const COMMUNICATION: std::ops::RangeInclusive<u16> = 0x1000..=0x1FFF;
 const IDENTITY: u16 = 0x1018;
-/// The node-ID of a slave that has none yet.
-const NO_NODE: u8 = 255;
 
 /// A CANopen slave on one CAN port.
 #[derive(Debug)]
@@ -50,10 +49,9 @@ pub(crate) struct Slave {
     pub(super) consequence: Option<State>,
     /// A bit timing is being activated.
     pub(super) switch: Option<BitTimingSwitch>,
-    /// So many numbers by which slaves are to identify themselves have fitted in a row.
-    pub(super) identified: u8,
-    /// The part of the identity that a fastscan asks for.
-    pub(super) scanned: u8,
+    pub(super) lss_work: LssWork,
+    /// What the traffic has done to it.
+    pub(super) strain: Strain,
     /// The second SDO server, and the identifier of its requests.
     pub(super) second_sdo: (Option<u16>, Server),
     pub(super) rpdos: Vec<Rpdo>,
@@ -104,8 +102,8 @@ impl Slave {
             clock: Clock::default(),
             consequence: None,
             switch: None,
-            identified: 0,
-            scanned: 0,
+            lss_work: LssWork::default(),
+            strain: Strain::default(),
             second_sdo: (None, Server::default()),
             rpdos: Vec::new(),
             tpdos: Vec::new(),
@@ -136,10 +134,15 @@ impl Slave {
         frame: &Frame,
         application: &mut dyn Application,
     ) {
-        let Id::Standard(id) = frame.id() else { return };
         if !self.powered || self.boot_at.is_some() {
             return;
         }
+        let Some(frame) = &self.bear(now, frame, application) else {
+            return;
+        };
+        let Some(id) = frame.standard_id() else {
+            return;
+        };
         let (raw, node) = (id.raw(), u16::from(self.node));
         if raw == lss::REQUEST {
             self.receive_lss(now, frame);
@@ -248,6 +251,7 @@ impl Slave {
     /// Power goes on or off.
     pub(crate) fn power(&mut self, now: Instant, on: bool, application: &mut dyn Application) {
         self.powered = on;
+        self.strain = Strain::default();
         self.queue.clear();
         if on {
             self.reset_node(now, application);
@@ -283,7 +287,7 @@ impl Slave {
     }
 
     /// Everything as after power-on: what is in non-volatile memory, else the defaults.
-    fn reset_node(&mut self, now: Instant, application: &mut dyn Application) {
+    pub(super) fn reset_node(&mut self, now: Instant, application: &mut dyn Application) {
         self.node = self.memory.node;
         self.pending_node = self.memory.node;
         self.bit_rate = self.memory.bit_rate;
@@ -295,7 +299,9 @@ impl Slave {
 
     /// The communication part of it, with the node-ID that was configured.
     pub(super) fn reset_communication(&mut self, now: Instant) {
-        self.node = self.pending_node;
+        if !self.behaviour.lss.node_waits_for_reset_node {
+            self.node = self.pending_node;
+        }
         self.objects
             .load(COMMUNICATION, self.node, &self.memory.values);
         self.initialise(now);
@@ -313,7 +319,9 @@ impl Slave {
             }
         }
         self.state = State::Initialising;
-        self.lss = LssState::Waiting;
+        if !self.behaviour.lss.configuration_survives_reset {
+            self.lss = LssState::Waiting;
+        }
         self.queue.clear();
         self.sdo = Server::default();
         self.sync = Sync::default();

@@ -41,3 +41,9 @@ pub(crate) const SLOW: Variant = Variant {
     words: "takes 10 to 15 ms for every answer",
     apply: |behaviour| behaviour.canopen.response_us = 10_000..15_000,
 };
+
+pub(crate) const LSS_ADDRESS_COMPARED_AT_THE_END: Variant = Variant {
+    name: "lss-address-compared-at-the-end",
+    words: "compares an LSS address when its fourth number has come, not number by number",
+    apply: |behaviour| behaviour.canopen.lss.compares_at_the_end = true,
+};

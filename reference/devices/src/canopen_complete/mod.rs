@@ -11,7 +11,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, faults, service_faults,
+    block_faults, faults, lss_faults, robustness_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -45,15 +45,24 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_IDENTITY_BYTE_ORDER,
     faults::LSS_SERIAL_IGNORED,
     faults::LSS_BIT_TIMING_MISSING,
+    faults::NODE_ID_ACTIVE_BEFORE_RESET,
 ];
 const FAULTS: [Fault;
-    faults::COMMON.len() + service_faults::ALL.len() + OWN_FAULTS.len() + block_faults::BLOCK.len()] =
-    all_of(&[
-        faults::COMMON,
-        service_faults::ALL,
-        OWN_FAULTS,
-        block_faults::BLOCK,
-    ]);
+    faults::COMMON.len()
+        + service_faults::ALL.len()
+        + OWN_FAULTS.len()
+        + lss_faults::EVERY.len()
+        + lss_faults::COMPLETE.len()
+        + robustness_faults::ALL.len()
+        + block_faults::BLOCK.len()] = all_of(&[
+    lss_faults::EVERY,
+    lss_faults::COMPLETE,
+    robustness_faults::ALL,
+    faults::COMMON,
+    service_faults::ALL,
+    OWN_FAULTS,
+    block_faults::BLOCK,
+]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -70,6 +79,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
         canopen::variants::SMALL_BLOCKS,
+        canopen::variants::LSS_ADDRESS_COMPARED_AT_THE_END,
     ],
     build,
 };

@@ -14,7 +14,9 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
 };
 
-use crate::canopen::{self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{
+    self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, faults, lss_faults,
+};
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
@@ -54,8 +56,14 @@ const OWN_FAULTS: &[Fault] = &[
     modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
     modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
 ];
-const FAULTS: [Fault; faults::COMMON.len() + modbus::faults::COMMON.len() + OWN_FAULTS.len()] =
-    all_of(&[faults::COMMON, modbus::faults::COMMON, OWN_FAULTS]);
+const FAULTS: [Fault;
+    faults::COMMON.len() + modbus::faults::COMMON.len() + OWN_FAULTS.len() + lss_faults::EVERY.len()] =
+    all_of(&[
+        faults::COMMON,
+        modbus::faults::COMMON,
+        OWN_FAULTS,
+        lss_faults::EVERY,
+    ]);
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
