@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// The folder in the project, what it is called in the program, and the files that are taken.
-const FOLDERS: [(&str, &str, &[&str]); 2] = [
+const FOLDERS: [(&str, &str, &[&str]); 3] = [
     ("suites", "suites", &["yaml"]),
+    ("catalogues", "catalogues", &["yaml"]),
     (
         "fixtures/devices",
         "devices",

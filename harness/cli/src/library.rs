@@ -1,6 +1,7 @@
 //! The suites and devices of a command: what the program carries, or what the user gave in its place.
 
 mod benches;
+mod catalogues;
 mod identity;
 mod near;
 
@@ -16,6 +17,7 @@ use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_run::{fill, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
+use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
 use fieldproof_suite::model::{Effect, Located, StimulusName};
 use fieldproof_suite::{Diagnostic, Position, SourceFile, Suite};
@@ -27,6 +29,7 @@ use crate::input;
 use crate::options::Selection;
 use crate::problems;
 use benches::is_bench;
+use catalogues::is_catalogue;
 
 /// Index and sub-index.
 const SERIAL_NUMBER: (u16, u8) = (0x1018, 4);
@@ -123,6 +126,8 @@ pub struct Library {
     pub suites: Vec<Suite>,
     /// The devices that are asked for, by name.
     pub devices: Vec<Device>,
+    /// What should be tested, in the order of their names.
+    pub catalogues: Vec<Catalogue>,
     /// How many benches were read.
     pub benches: usize,
     /// What is wrong with the files but does not keep them from being used.
@@ -154,7 +159,7 @@ impl Library {
     }
 
     /// Reads what `selection` asks for and looks at it more closely: at the benches that the program carries too, if
-    /// nothing else is asked for, and for deviations from checks that there are not.
+    /// nothing else is asked for, and for deviations from checks and entries of catalogues that there are not.
     ///
     /// # Errors
     /// As [`Library::load`].
@@ -165,6 +170,7 @@ impl Library {
         }
         reader.read_benches();
         reader.look_for_checks();
+        reader.look_for_entries();
         reader.finish(selection)
     }
 }
@@ -226,6 +232,8 @@ struct Reader {
     /// The files of the descriptions, where deviations from unknown checks are shown.
     description_files: BTreeMap<String, SourceFile>,
     benches: Vec<(SourceFile, Folder)>,
+    catalogues: BTreeMap<String, Catalogue>,
+    catalogue_files: Vec<SourceFile>,
     /// The names of all devices that there is a description of, also of those that are not played on.
     described: BTreeSet<String>,
     /// The names of the devices whose folders were given for names.
@@ -238,6 +246,7 @@ impl Reader {
         reader.arguments(&selection.suites);
         reader.read_suites();
         reader.read_devices();
+        reader.read_catalogues();
         reader.device_folders(&selection.devices);
         reader
     }
@@ -290,6 +299,7 @@ impl Reader {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
                 self.benches.push((file, Folder::OnDisk(folder)));
             }
+            Ok(file) if is_catalogue(&file) => self.catalogue_files.push(file),
             Ok(file) => self.files.push(file),
         }
     }
@@ -562,6 +572,7 @@ impl Reader {
         Ok(Library {
             suites: self.suites,
             devices,
+            catalogues: self.catalogues.into_values().collect(),
             benches: self.benches.len(),
             warnings: self.problems,
         })

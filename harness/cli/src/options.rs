@@ -278,6 +278,13 @@ pub struct ListOptions {
     /// What is listed.
     #[command(flatten)]
     pub selection: Selection,
+    /// List instead what should be tested, entry by entry of each catalogue, with the cases that test it; fails where an
+    /// entry has neither a case nor a reason.
+    #[arg(long)]
+    pub coverage: bool,
+    /// Only this catalogue; may be repeated.
+    #[arg(long = "catalogue", value_name = "NAME", requires = "coverage")]
+    pub catalogues: Vec<String>,
     /// How to print it.
     #[arg(long, default_value = "text")]
     pub format: Format,
@@ -415,6 +422,8 @@ pub enum SchemaKind {
     Device,
     /// A bench.
     Bench,
+    /// A catalogue of what should be tested.
+    Catalogue,
     /// One line of a journal.
     Journal,
 }

@@ -121,6 +121,10 @@ pub fn play(
 pub(crate) struct PlannedCase {
     pub(crate) id: String,
     pub(crate) title: String,
+    /// The case as written that it is a row of.
+    pub(crate) written_id: String,
+    /// The catalogues and entries of them that it realises.
+    pub(crate) covers: Vec<(String, String)>,
     /// Why it would be skipped.
     pub(crate) skipped: Option<String>,
 }
@@ -174,6 +178,8 @@ fn plan_case(
     let unread = |title: &str, why: Option<String>| PlannedCase {
         id: case.id(),
         title: title.to_owned(),
+        written_id: case.written_id(),
+        covers: Vec::new(),
         skipped: why,
     };
     if let Some(absent) = case.absent() {
@@ -196,6 +202,8 @@ fn plan_case(
     PlannedCase {
         id: lowered.id,
         title: lowered.title,
+        written_id: lowered.written_id,
+        covers: lowered.covers,
         skipped,
     }
 }

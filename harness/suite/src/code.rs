@@ -106,4 +106,9 @@ codes! {
     DUPLICATE_DEVICE = "S061";
     /// A line or adapter that two ports of a bench are connected to.
     LINK_IN_USE = "S062";
+
+    /// Two entries of a catalogue with one number.
+    DUPLICATE_ENTRY = "S070";
+    /// An entry or a catalogue that there is not.
+    UNKNOWN_ENTRY = "S071";
 }

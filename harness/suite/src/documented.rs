@@ -1,6 +1,6 @@
 //! The examples in docs/suite-language.md, which must be what the language is.
 
-use crate::{SourceFile, load, load_device};
+use crate::{SourceFile, load, load_catalogue, load_device};
 
 /// Every block of YAML in the document, made into a whole file: steps into a case, cases into a suite.
 pub(crate) fn documented_files() -> Vec<String> {
@@ -39,9 +39,13 @@ fn the_documented_examples_load() {
             path: "docs/suite-language.md".to_owned(),
             text,
         };
-        let diagnostics = match file.text.contains("\nsuite:") {
-            true => load(std::slice::from_ref(&file)).diagnostics,
-            false => load_device(&file).err().unwrap_or_default(),
+        let of_kind = |key: &str| file.text.contains(key);
+        let diagnostics = if of_kind("\nsuite:") {
+            load(std::slice::from_ref(&file)).diagnostics
+        } else if of_kind("\ncatalogue:") {
+            load_catalogue(&file).err().unwrap_or_default()
+        } else {
+            load_device(&file).err().unwrap_or_default()
         };
         assert!(diagnostics.is_empty(), "{}\n{diagnostics:#?}", file.text);
     }

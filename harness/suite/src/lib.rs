@@ -6,6 +6,7 @@
 //! A device description and a bench take the same way: [`load_device`], [`load_bench`].
 
 pub mod bench;
+pub mod catalogue;
 pub mod code;
 pub mod device;
 mod diagnostic;
@@ -29,6 +30,7 @@ mod yaml;
 pub use diagnostic::{Diagnostic, Position, Severity};
 pub use expand::Environment;
 pub use load::{
-    CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_device, unknown_checks,
+    CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_catalogue, load_device,
+    unknown_checks, unknown_entries,
 };
-pub use schema::{bench_schema, device_schema, schema};
+pub use schema::{bench_schema, catalogue_schema, device_schema, schema};

@@ -5,6 +5,7 @@ use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
+use crate::catalogue::Catalogue;
 use crate::file::{BenchFile, DeviceFile, SuiteFile};
 
 /// The JSON Schema (draft 2020-12) of suite files.
@@ -42,6 +43,13 @@ pub fn device_schema() -> Value {
 /// The JSON Schema (draft 2020-12) of benches.
 pub fn bench_schema() -> Value {
     let mut schema = generator().into_root_schema_for::<BenchFile>().to_value();
+    widen_scalars(&mut schema);
+    schema
+}
+
+/// The JSON Schema (draft 2020-12) of catalogues.
+pub fn catalogue_schema() -> Value {
+    let mut schema = generator().into_root_schema_for::<Catalogue>().to_value();
     widen_scalars(&mut schema);
     schema
 }
@@ -181,9 +189,10 @@ mod tests {
     #[test]
     fn the_language_as_documented_follows_its_schema() {
         for file in documented_files() {
-            let schema = match file.contains("\nsuite:") {
-                true => schema(),
-                false => device_schema(),
+            let schema = match file {
+                _ if file.contains("\nsuite:") => schema(),
+                _ if file.contains("\ncatalogue:") => catalogue_schema(),
+                _ => device_schema(),
             };
             assert_eq!(errors(&schema, &file), Vec::<String>::new(), "{file}");
         }

@@ -11,8 +11,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::{
-    Diagnostic, SourceFile, code, load, load_bench, load_device, unknown_checks,
+    Diagnostic, SourceFile, code, load, load_bench, load_catalogue, load_device, unknown_checks,
+    unknown_entries,
 };
 
 fn root() -> PathBuf {
@@ -55,9 +57,27 @@ fn diagnostics(path: &Path) -> Vec<Diagnostic> {
     if file.path.ends_with(".bench.yaml") {
         return load_bench(&file).unwrap_err();
     }
+    if file.path.ends_with(".catalogue.yaml") {
+        return load_catalogue(&file).unwrap_err();
+    }
+    if file.path.starts_with("S071") {
+        let loaded = load(&[file]);
+        assert_eq!(loaded.diagnostics, []);
+        return unknown_entries(&loaded.suites[0], &[catalogue()]);
+    }
     // A second suite of the same name is a second file.
     let times = if file.path.starts_with("S032") { 2 } else { 1 };
     load(&vec![file; times]).diagnostics
+}
+
+/// The catalogue that a case could name.
+fn catalogue() -> Catalogue {
+    let text = "language: 1\ncatalogue: cct\ntitle: T\nsource: {document: D}\nentries: [{id: 2.10, title: E}]";
+    let file = SourceFile {
+        path: "c.yaml".to_owned(),
+        text: text.to_owned(),
+    };
+    load_catalogue(&file).unwrap()
 }
 
 /// The checks that a suite could have.

@@ -1,5 +1,7 @@
 //! `fieldproof list`
 
+mod coverage;
+
 use std::fmt::Write;
 
 use fieldproof_run::{effect_name, feature_name};
@@ -43,6 +45,9 @@ pub(crate) fn list(options: &ListOptions, screen: &mut Screen) -> Result<Exit, C
         ..Plan::default()
     };
     select::patterns_must_match(&library, &plan)?;
+    if options.coverage {
+        return coverage::show(&library, &plan, options, screen);
+    }
     let for_some_device = |suite: &&Suite| {
         options.selection.devices.is_empty()
             || library

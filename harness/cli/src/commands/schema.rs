@@ -11,6 +11,7 @@ pub(crate) fn schema(kind: SchemaKind, screen: &mut Screen) -> Result<Exit, Comp
         SchemaKind::Suite => fieldproof_suite::schema(),
         SchemaKind::Device => fieldproof_suite::device_schema(),
         SchemaKind::Bench => fieldproof_suite::bench_schema(),
+        SchemaKind::Catalogue => fieldproof_suite::catalogue_schema(),
         SchemaKind::Journal => fieldproof_record::journal_schema(),
     };
     screen.print_json(&schema);

@@ -3,6 +3,7 @@
 
 mod bench;
 mod case;
+mod catalogue;
 mod check;
 mod checks;
 mod device;
@@ -15,6 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 pub use bench::load_bench;
+pub use catalogue::{load_catalogue, unknown_entries};
 pub use device::{load_device, unknown_checks};
 pub use fill::Columns;
 
@@ -135,6 +137,11 @@ impl Suite {
             checks::names(&template.body, &template.rows, &mut checks);
         }
         checks
+    }
+
+    /// The text of its file.
+    pub fn text(&self) -> &Arc<str> {
+        &self.text
     }
 
     /// The text of a line of its file, counted from 1; empty if there is no such line.
