@@ -15,7 +15,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_run::{fill, suites_for};
+use fieldproof_run::{Described, fill, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
@@ -41,6 +41,8 @@ pub struct Device {
     pub description: DeviceDescription,
     /// Its object dictionary, if it has a CANopen side.
     pub dictionary: Option<Dictionary>,
+    /// The bit rates that its EDS claims.
+    pub bit_rates_kbit_per_s: BTreeSet<u32>,
     /// The reference device of that name; without one, the device cannot be simulated.
     pub kind: Option<&'static DeviceKind>,
     /// Where a bench has it.
@@ -102,8 +104,18 @@ impl Device {
     fn fill(&mut self, suites: &[Suite]) {
         let canopen = self.description.canopen.as_ref();
         let node = canopen.map_or(1, |canopen| canopen.node);
+        let can = self.description.ports.get("can");
+        let described = Described {
+            dictionary: self.dictionary.as_ref(),
+            node,
+            bit_rate_kbit_per_s: can.and_then(|port| match port {
+                PortDescription::Can { bit_rate } => Some(bit_rate / 1000),
+                PortDescription::Serial { .. } => None,
+            }),
+            bit_rates_kbit_per_s: &self.bit_rates_kbit_per_s,
+        };
         self.suites = suites_for(suites, &self.description)
-            .map(|suite| fill(suite, self.dictionary.as_ref(), node))
+            .map(|suite| fill(suite, &described))
             .collect();
     }
 
@@ -404,15 +416,16 @@ impl Reader {
         };
         let kind = fieldproof_devices::kind(&description.device);
         self.ports(&description, kind, &file.path);
-        let dictionary = description
+        let (dictionary, bit_rates) = description
             .canopen
             .as_ref()
             .and_then(|canopen| self.eds(folder, &canopen.eds))
             .map(|(eds, path)| {
                 let contradictions = identity::contradictions(&description, file, &eds, &path);
                 self.problems.extend(contradictions);
-                eds.dictionary
-            });
+                (eds.dictionary, eds.device_info.bit_rates_kbit_per_s)
+            })
+            .unzip();
         let map = description
             .modbus
             .as_ref()
@@ -424,6 +437,7 @@ impl Reader {
         Some(Device {
             description,
             dictionary,
+            bit_rates_kbit_per_s: bit_rates.unwrap_or_default(),
             kind,
             place: None,
             suites: Vec::new(),

@@ -1,30 +1,49 @@
 //! What a device's object dictionary has of what a case asks for.
 
 mod absent;
+mod bit_rate;
 mod object;
 mod pdo;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
+
 use fieldproof_dictionary::Dictionary;
 use fieldproof_suite::model::{Except, Query, QueryKind};
 use fieldproof_suite::{Columns, Suite};
 
-/// `suite` with its tables filled from the dictionary of the device with the node-ID `node`.
-pub fn fill(suite: &Suite, dictionary: Option<&Dictionary>, node: u8) -> Suite {
-    suite.filled(&|query| find(query, dictionary, node))
+/// What is known of a device beforehand.
+#[derive(Debug, Clone, Copy)]
+pub struct Described<'a> {
+    /// Its object dictionary.
+    pub dictionary: Option<&'a Dictionary>,
+    /// Its node-ID.
+    pub node: u8,
+    /// The bit rate of its CAN port.
+    pub bit_rate_kbit_per_s: Option<u32>,
+    /// The bit rates that its EDS claims.
+    pub bit_rates_kbit_per_s: &'a BTreeSet<u32>,
 }
 
-/// Everything in `dictionary` that is as `query` says, in the order of the dictionary.
-fn find(query: &Query, dictionary: Option<&Dictionary>, node: u8) -> Vec<Columns> {
-    let Some(dictionary) = dictionary else {
+/// `suite` with its tables filled from what is known of a device.
+pub fn fill(suite: &Suite, described: &Described<'_>) -> Suite {
+    suite.filled(&|query| find(query, described))
+}
+
+/// Everything that is as `query` says, in the order of the dictionary.
+fn find(query: &Query, described: &Described<'_>) -> Vec<Columns> {
+    let Some(dictionary) = described.dictionary else {
         return Vec::new();
     };
+    let node = described.node;
     let found = match query.is {
         QueryKind::Object => object::objects(query, dictionary, node),
         QueryKind::AbsentObject => absent::objects(query, dictionary),
         QueryKind::AbsentSubIndex => absent::sub_indices(query, dictionary),
         QueryKind::Tpdo | QueryKind::Rpdo => pdo::pdos(query, dictionary, node),
+        QueryKind::BitRate => bit_rate::bit_rates(described, false),
+        QueryKind::OtherBitRate => bit_rate::bit_rates(described, true),
     };
     spread(found, query.at_most)
 }

@@ -2,7 +2,7 @@
 //!
 //! | line | means |
 //! | --- | --- |
-//! | `> 601#4063600000000000` | a frame to port 0; `#R` for a remote frame |
+//! | `> 601#4063600000000000` | a frame to port 0; `#R` for a remote frame, eight digits for an extended one |
 //! | `< 581#4363600013D1FFFF` | a frame from port 0 |
 //! | `>> 20 03 00 00 00 01 82 BB` | characters to port 1, without gaps |
 //! | `<< 20 03 02 0F B4 01 C4` | characters from port 1; with a companion there, `>>` is what that answers |
@@ -267,7 +267,11 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
 
 fn frame(text: &str) -> Frame {
     let (id, data) = text.split_once('#').unwrap();
-    let id = Id::standard(u16::from_str_radix(id, 16).unwrap()).unwrap();
+    let raw = u32::from_str_radix(id, 16).unwrap();
+    let id = match id.len() {
+        8 => Id::extended(raw).unwrap(),
+        _ => Id::standard(raw.try_into().unwrap()).unwrap(),
+    };
     if data == "R" {
         return Frame::remote(id, 0).unwrap();
     }

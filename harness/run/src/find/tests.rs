@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
+
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_suite::{Columns, SourceFile, load};
 
-use super::{fill, spread};
+use super::{Described, fill, spread};
 
 const EDS: &str = "[DeviceInfo]
 [1000]
@@ -102,7 +104,14 @@ fn cases(head: &str, title: &str) -> Vec<String> {
         text,
     }]);
     assert_eq!(loaded.diagnostics, []);
-    let suite = fill(&loaded.suites[0], Some(&dictionary()), 5);
+    let dictionary = dictionary();
+    let described = Described {
+        dictionary: Some(&dictionary),
+        node: 5,
+        bit_rate_kbit_per_s: Some(250),
+        bit_rates_kbit_per_s: &BTreeSet::from([20, 100, 250, 1000]),
+    };
+    let suite = fill(&loaded.suites[0], &described);
     let environment = fieldproof_suite::Environment::default();
     suite
         .cases()
@@ -243,5 +252,21 @@ fn a_few_are_spread_over_all() {
             "0123456789".into(),
             "0123456789".into()
         )
+    );
+}
+
+#[test]
+fn bit_rates_are_those_of_the_eds_that_lss_can_name() {
+    assert_eq!(
+        cases("each: {r: {is: bit-rate}}", "{r}, {r-index}, {r-before}"),
+        [
+            "s/c[r=1000kbit_s] 1000 kbit/s, 0, 250 kbit/s",
+            "s/c[r=250kbit_s] 250 kbit/s, 3, 250 kbit/s",
+            "s/c[r=20kbit_s] 20 kbit/s, 7, 250 kbit/s",
+        ]
+    );
+    assert_eq!(
+        cases("each: {r: {is: other-bit-rate}}", "{r-index}"),
+        ["s/c[r=1000kbit_s] 0", "s/c[r=20kbit_s] 7"]
     );
 }

@@ -64,6 +64,10 @@ pub enum QueryKind {
     Tpdo,
     /// RPDOs.
     Rpdo,
+    /// Bit rates that the EDS claims and LSS can name.
+    BitRate,
+    /// Those of them that are not the present one.
+    OtherBitRate,
 }
 
 /// A range of indices.
@@ -331,6 +335,8 @@ impl fmt::Display for Query {
             QueryKind::AbsentSubIndex => "object without a sub-index",
             QueryKind::Tpdo => "TPDO",
             QueryKind::Rpdo => "RPDO",
+            QueryKind::BitRate => "bit rate in its EDS that LSS can name",
+            QueryKind::OtherBitRate => "second bit rate in its EDS that LSS can name",
         })?;
         let mut said: Vec<String> = Vec::new();
         let or = |words: Vec<String>| words.join(" or ");

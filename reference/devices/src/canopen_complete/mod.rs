@@ -200,4 +200,8 @@ impl Participant for Complete {
 }
 
 #[cfg(test)]
+mod disturbed_tests;
+#[cfg(test)]
+mod lss_tests;
+#[cfg(test)]
 mod tests;
