@@ -11,6 +11,7 @@ mod glob;
 mod input;
 mod library;
 mod links;
+mod object_faults;
 mod operator;
 mod options;
 mod player;

@@ -284,6 +284,7 @@ pub const fn feature_name(feature: Feature) -> &'static str {
         Feature::Cia406 => "cia406",
         Feature::ModbusRtu => "modbus-rtu",
         Feature::ModbusTcp => "modbus-tcp",
+        Feature::FactorySettings => "factory-settings",
         Feature::Ssi => "ssi",
         Feature::Gateway => "gateway",
     }

@@ -189,6 +189,8 @@ pub enum Feature {
     ModbusRtu,
     /// Modbus TCP server.
     ModbusTcp,
+    /// It has never been configured: everything has the default of its dictionary.
+    FactorySettings,
     /// SSI output.
     Ssi,
     /// CANopen on one side, Modbus master on the other.

@@ -151,9 +151,20 @@ impl DeviceKind {
         }
         if let Some(name) = &settings.fault {
             let fault = self.faults.iter().find(|fault| fault.name == name);
-            (fault.ok_or_else(|| self.unknown(name))?.apply)(&mut behaviour);
+            match (fault, canopen::ObjectFault::parse(name)) {
+                (Some(fault), _) => (fault.apply)(&mut behaviour),
+                (None, Some(fault)) if self.is_canopen() => {
+                    behaviour.canopen.object_fault = Some(fault);
+                }
+                _ => return Err(self.unknown(name)),
+            }
         }
         Ok(behaviour)
+    }
+
+    fn is_canopen(&self) -> bool {
+        let is_can = |port: &PortKind| matches!(port.medium, Medium::Can { .. });
+        self.ports.iter().any(is_can)
     }
 
     fn unknown(&self, name: &str) -> UnknownFault {

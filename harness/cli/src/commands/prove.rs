@@ -19,7 +19,7 @@ use crate::options::{Format, ProveOptions};
 use crate::player::{self, Plan};
 use crate::progress::Progress;
 use crate::screen::Screen;
-use crate::{select, stop};
+use crate::{object_faults, select, stop};
 
 /// Plays every suite against every fault and shows which case catches which.
 pub(crate) fn prove(options: &ProveOptions, screen: &mut Screen) -> Result<Exit, Complaint> {
@@ -48,12 +48,12 @@ pub(crate) fn prove(options: &ProveOptions, screen: &mut Screen) -> Result<Exit,
 }
 
 /// What a device is made to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind", content = "name")]
 enum Guise {
     AsItIs,
     Variant(&'static str),
-    Fault(&'static str),
+    Fault(String),
 }
 
 /// One device in one guise, to be played with all suites.
@@ -78,18 +78,7 @@ fn rounds<'l>(
         return Err(select::nothing_selected());
     }
     select::must_be_simulated(&devices)?;
-    let known: BTreeSet<&str> = devices
-        .iter()
-        .flat_map(|device| device.faults().iter().map(|it| it.name))
-        .collect();
-    if let Some(name) = options
-        .faults
-        .iter()
-        .find(|name| !known.contains(name.as_str()))
-    {
-        let known: Vec<&str> = known.into_iter().collect();
-        return Err(Complaint::unknown("fault", name, &known));
-    }
+    faults_must_be_known(&devices, &options.faults)?;
     let mut rounds = Vec::new();
     for device in devices {
         let mut round = |guise, breaks, fault: Option<&str>, variant: Option<&str>| {
@@ -108,18 +97,49 @@ fn rounds<'l>(
         for variant in device.variants() {
             round(Guise::Variant(variant.name), "", None, Some(variant.name));
         }
-        for fault in device.faults() {
-            if options.faults.is_empty() || options.faults.iter().any(|name| name == fault.name) {
-                round(
-                    Guise::Fault(fault.name),
-                    fault.breaks,
-                    Some(fault.name),
-                    None,
-                );
-            }
+        for (name, breaks) in faults(device, &options.faults) {
+            round(Guise::Fault(name.clone()), breaks, Some(&name), None);
         }
     }
     Ok(rounds)
+}
+
+/// The faults that `device` is given, each with the clause it breaks: those asked for, or else all that have a name and
+/// some of each kind that single values can have.
+fn faults(device: &Device, asked: &[String]) -> Vec<(String, &'static str)> {
+    let named = device.faults().iter();
+    let named = named.map(|fault| (fault.name.to_owned(), fault.breaks));
+    if asked.is_empty() {
+        let of_objects = object_faults::some(device).into_iter();
+        return named
+            .chain(of_objects.map(|fault| (fault.to_string(), fault.kind().breaks())))
+            .collect();
+    }
+    let of_objects = asked
+        .iter()
+        .filter_map(|name| object_faults::of(device, name));
+    named
+        .filter(|(name, _)| asked.contains(name))
+        .chain(of_objects.map(|fault| (fault.to_string(), fault.kind().breaks())))
+        .collect()
+}
+
+fn faults_must_be_known(devices: &[&Device], asked: &[String]) -> Result<(), Complaint> {
+    let known: BTreeSet<&str> = devices
+        .iter()
+        .flat_map(|device| device.faults().iter().map(|it| it.name))
+        .collect();
+    let is_known = |name: &&String| {
+        let of_object = |device: &&Device| object_faults::of(device, name).is_some();
+        known.contains(name.as_str()) || devices.iter().any(of_object)
+    };
+    match asked.iter().find(|name| !is_known(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let known: Vec<&str> = known.iter().copied().collect();
+            Err(Complaint::unknown("fault", name, &known))
+        }
+    }
 }
 
 /// What a round came to, by case as written, its rows taken together.
@@ -248,7 +268,7 @@ struct Proof {
     holds: bool,
     rounds: Vec<Finding>,
     /// Faults that no case caught: device and name.
-    uncaught: Vec<(String, &'static str)>,
+    uncaught: Vec<(String, String)>,
     /// Cases that were played and caught nothing on any device.
     idle_cases: Vec<String>,
 }
@@ -301,7 +321,7 @@ fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
         }
         findings.push(Finding {
             device: round.device.name().to_owned(),
-            guise: round.guise,
+            guise: round.guise.clone(),
             breaks: round.breaks,
             failed,
             inconclusive: tally.with(Verdict::Inconclusive),
@@ -310,10 +330,12 @@ fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
             cases: tally.cases.len(),
         });
     }
-    let uncaught: Vec<(String, &'static str)> = findings
+    let uncaught: Vec<(String, String)> = findings
         .iter()
-        .filter_map(|finding| match finding.guise {
-            Guise::Fault(name) if finding.failed.is_empty() => Some((finding.device.clone(), name)),
+        .filter_map(|finding| match &finding.guise {
+            Guise::Fault(name) if finding.failed.is_empty() => {
+                Some((finding.device.clone(), name.clone()))
+            }
             _ => None,
         })
         .collect();

@@ -20,7 +20,7 @@ use crate::player::Plan;
 use crate::progress::Progress;
 use crate::reports::Reports;
 use crate::screen::{INK, Screen};
-use crate::{select, stop};
+use crate::{object_faults, select, stop};
 use lanes::Stage;
 
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
@@ -170,7 +170,12 @@ fn devices<'l>(library: &'l Library, plan: &Plan) -> Result<Vec<&'l Device>, Com
     };
     let mut devices: Vec<&Device> = library.devices.iter().collect();
     if let Some(name) = &plan.behaviour.fault {
-        devices = having("fault", name, devices, faults)?;
+        let with_object = |device: &&&Device| object_faults::of(device, name).is_some();
+        let with: Vec<&Device> = devices.iter().filter(with_object).copied().collect();
+        devices = match with.is_empty() {
+            true => having("fault", name, devices, faults)?,
+            false => with,
+        };
     }
     if let Some(name) = &plan.behaviour.variant {
         devices = having("variant", name, devices, variants)?;

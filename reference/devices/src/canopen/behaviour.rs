@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{BlockTransfer, LssDepartures, Robustness};
+use super::{BlockTransfer, LssDepartures, ObjectFault, Robustness};
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
 #[derive(Debug, Clone)]
@@ -26,6 +26,8 @@ pub struct Behaviour {
     pub lss: LssDepartures,
     /// What frames that mean nothing do to it.
     pub robustness: Robustness,
+    /// One value is not as the dictionary says.
+    pub object_fault: Option<ObjectFault>,
 
     /// The boot-up message is sent.
     pub boot_up: bool,
@@ -202,6 +204,7 @@ impl Default for Behaviour {
             block: BlockTransfer::default(),
             lss: LssDepartures::default(),
             robustness: Robustness::default(),
+            object_fault: None,
             boot_up: true,
             heartbeat_can_be_stopped: true,
             nmt_address: NmtAddress::All,

@@ -17,6 +17,7 @@ pub(crate) mod lss_faults;
 mod lss_services;
 mod memory;
 mod nmt;
+mod object_fault;
 mod objects;
 mod pdo;
 mod pdo_rules;
@@ -41,6 +42,7 @@ pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, Sta
 pub(crate) use emergency::HARDWARE;
 pub use lss_departures::LssDepartures;
 use nmt::State;
+pub use object_fault::{ObjectFault, ObjectFaultKind};
 pub(crate) use objects::Objects;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
 pub use robustness::Robustness;

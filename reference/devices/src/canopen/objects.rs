@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fieldproof_dictionary::{Dictionary, Entry};
 
 use super::emergency::ERROR_HISTORY;
-use super::{Abort, Address};
+use super::{Abort, Address, ObjectFault, ObjectFaultKind};
 
 /// One value with its attributes.
 #[derive(Debug, Clone)]
@@ -38,7 +38,44 @@ impl Object {
         }
     }
 
+    /// A value that nothing describes.
+    fn surplus() -> Object {
+        Object {
+            readable: true,
+            writable: false,
+            mappable: false,
+            size: Some(1),
+            bits: Some(8),
+            signed: false,
+            low: None,
+            high: None,
+            value: vec![0],
+        }
+    }
+
+    /// Makes it other than its description says.
+    fn spoil(&mut self, kind: ObjectFaultKind) {
+        match kind {
+            ObjectFaultKind::Missing | ObjectFaultKind::Surplus => {}
+            ObjectFaultKind::WrongDefault => {
+                if let Some(first) = self.value.first_mut() {
+                    *first ^= 1;
+                }
+            }
+            ObjectFaultKind::WrongSize => {
+                self.size = self.size.map(|size| size + 1);
+                self.value.push(0);
+            }
+            ObjectFaultKind::Writable => self.writable = true,
+            ObjectFaultKind::ReadOnly => self.writable = false,
+            ObjectFaultKind::Readable => self.readable = true,
+            ObjectFaultKind::TooHigh => self.high = None,
+            ObjectFaultKind::TooLow => self.low = None,
+        }
+    }
+
     fn load(&mut self, entry: &Entry, node: u8) {
+        self.size = entry.data_type.bytes();
         self.low = entry.low_limit.map(|limit| limit.value(node));
         self.high = entry.high_limit.map(|limit| limit.value(node));
         let zeros = || vec![0; self.size.unwrap_or(0)];
@@ -99,19 +136,31 @@ pub(crate) struct Objects {
     dictionary: &'static Dictionary,
     addresses: Vec<Address>,
     objects: Vec<Object>,
+    fault: Option<ObjectFault>,
     /// A value has changed since [`Objects::take_changed`].
     changed: bool,
 }
 
 impl Objects {
-    pub(crate) fn new(dictionary: &'static Dictionary) -> Objects {
-        let entries = || dictionary.entries();
+    pub(crate) fn new(dictionary: &'static Dictionary, fault: Option<ObjectFault>) -> Objects {
+        let entries = dictionary.entries();
+        let mut all: BTreeMap<Address, Object> = entries
+            .map(|(index, sub, entry)| (Address::new(index, sub), Object::new(entry)))
+            .collect();
+        if let Some(fault) = fault {
+            match fault.kind() {
+                ObjectFaultKind::Missing => drop(all.remove(&fault.address())),
+                ObjectFaultKind::Surplus => {
+                    all.entry(fault.address()).or_insert_with(Object::surplus);
+                }
+                _ => {}
+            }
+        }
         Objects {
             dictionary,
-            addresses: entries()
-                .map(|(index, sub, _)| Address::new(index, sub))
-                .collect(),
-            objects: entries().map(|(_, _, entry)| Object::new(entry)).collect(),
+            addresses: all.keys().copied().collect(),
+            objects: all.into_values().collect(),
+            fault,
             changed: true,
         }
     }
@@ -131,6 +180,9 @@ impl Objects {
             object.load(entry, node);
             if let Some(value) = saved.get(address) {
                 object.value.clone_from(value);
+            }
+            if let Some(fault) = self.fault.filter(|fault| fault.address() == *address) {
+                object.spoil(fault.kind());
             }
         }
         self.changed = true;

@@ -84,7 +84,7 @@ impl Slave {
             bit_rate: factory.bit_rate,
         };
         let mut slave = Slave {
-            objects: Objects::new(profile.dictionary),
+            objects: Objects::new(profile.dictionary, behaviour.object_fault),
             profile,
             behaviour,
             state: State::Initialising,

@@ -59,7 +59,7 @@ pub(super) fn text(proof: &Proof) -> String {
 }
 
 fn round(text: &mut String, finding: &Finding) {
-    let (name, is_fault) = match finding.guise {
+    let (name, is_fault) = match &finding.guise {
         Guise::AsItIs => ("as it is".to_owned(), false),
         Guise::Variant(name) => (format!("variant {name}"), false),
         Guise::Fault(name) => (format!("fault {name}"), true),
