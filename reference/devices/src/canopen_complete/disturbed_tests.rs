@@ -43,7 +43,12 @@ fn each_fault_shows() {
             "",
             ANSWER,
         ),
-        ("long-sync-resets", &["080#0102", "10"], "", boots),
+        (
+            "long-sync-resets",
+            &["080#0102", "10"],
+            "08A#4082000000000000",
+            boots,
+        ),
         ("short-time-resets", &["100#FF", "10"], "", boots),
         ("empty-pdo-resets", &["20A#", "10"], "", boots),
         (
