@@ -15,7 +15,7 @@ use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
 use fieldproof_report::{Problem, Severity, SourceText};
-use fieldproof_run::{Described, fill, suites_for};
+use fieldproof_run::{Described, fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
@@ -101,22 +101,34 @@ impl Device {
         self.simulated().map_or(&[], |kind| kind.variants)
     }
 
+    /// The device with at most `most` rows of every table that its dictionary fills.
+    pub(crate) fn with_some_of_each(&self, suites: &[Suite], most: u16) -> Device {
+        let some = |suite| fill_some(suite, &self.described(), most);
+        Device {
+            suites: suites_for(suites, &self.description).map(some).collect(),
+            ..self.clone()
+        }
+    }
+
     fn fill(&mut self, suites: &[Suite]) {
+        self.suites = suites_for(suites, &self.description)
+            .map(|suite| fill(suite, &self.described()))
+            .collect();
+    }
+
+    /// What fills the tables of suites.
+    fn described(&self) -> Described<'_> {
         let canopen = self.description.canopen.as_ref();
-        let node = canopen.map_or(1, |canopen| canopen.node);
         let can = self.description.ports.get("can");
-        let described = Described {
+        Described {
             dictionary: self.dictionary.as_ref(),
-            node,
+            node: canopen.map_or(1, |canopen| canopen.node),
             bit_rate_kbit_per_s: can.and_then(|port| match port {
                 PortDescription::Can { bit_rate } => Some(bit_rate / 1000),
                 PortDescription::Serial { .. } => None,
             }),
             bit_rates_kbit_per_s: &self.bit_rates_kbit_per_s,
-        };
-        self.suites = suites_for(suites, &self.description)
-            .map(|suite| fill(suite, &described))
-            .collect();
+        }
     }
 
     fn simulated(&self) -> Option<&'static DeviceKind> {

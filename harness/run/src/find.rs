@@ -31,6 +31,11 @@ pub fn fill(suite: &Suite, described: &Described<'_>) -> Suite {
     suite.filled(&|query| find(query, described))
 }
 
+/// As [`fill`], with at most `most` rows of every table that the device fills, spread over all there are.
+pub fn fill_some(suite: &Suite, described: &Described<'_>, most: u16) -> Suite {
+    suite.filled(&|query| spread(find(query, described), Some(most)))
+}
+
 /// Everything that is as `query` says, in the order of the dictionary.
 fn find(query: &Query, described: &Described<'_>) -> Vec<Columns> {
     let Some(dictionary) = described.dictionary else {

@@ -34,5 +34,5 @@ mod unexpected;
 mod value;
 
 pub use applies::{Bench, effect_name, feature_name, skip_reason};
-pub use find::{Described, fill};
+pub use find::{Described, fill, fill_some};
 pub use lane::{LaneJob, LaneOutcome, play_lane, suites_for};

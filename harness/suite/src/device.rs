@@ -183,6 +183,24 @@ pub enum Feature {
     RemoteFrames,
     /// The state machine of drives, CiA 402.
     Cia402,
+    /// Mode of operation 1 of CiA 402.
+    ProfilePosition,
+    /// Mode of operation 2 of CiA 402.
+    Velocity,
+    /// Mode of operation 3 of CiA 402.
+    ProfileVelocity,
+    /// Mode of operation 4 of CiA 402.
+    TorqueProfile,
+    /// Mode of operation 6 of CiA 402.
+    Homing,
+    /// Mode of operation 7 of CiA 402.
+    InterpolatedPosition,
+    /// Mode of operation 8 of CiA 402.
+    CyclicSynchronousPosition,
+    /// Mode of operation 9 of CiA 402.
+    CyclicSynchronousVelocity,
+    /// Mode of operation 10 of CiA 402.
+    CyclicSynchronousTorque,
     /// An encoder profile device, CiA 406.
     Cia406,
     /// Modbus RTU slave.

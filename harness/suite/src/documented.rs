@@ -25,7 +25,7 @@ fn whole_file(block: &str) -> String {
     }
     if block.starts_with("- ") {
         return format!(
-            "{head}  - case: steps\n    title: Some steps\n    cite: manual\n    effects: [writes, resets, disturbs-bus]\n    needs: [stimulus: power, stimulus: process-value, stimulus: condition, stimulus: setting]\n    steps:\n      - nmt: start\n      - expect-silence: 1 ms\n{}",
+            "{head}  - case: steps\n    title: Some steps\n    cite: manual\n    effects: [writes, resets, disturbs-bus, moves]\n    needs: [stimulus: power, stimulus: process-value, stimulus: condition, stimulus: setting]\n    steps:\n      - nmt: start\n      - expect-silence: 1 ms\n{}",
             indented("      ")
         );
     }

@@ -63,6 +63,13 @@ pub(crate) fn pdo_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u
     within(u8::deserialize(deserializer)?, 1, 4)
 }
 
+pub(crate) fn optional_pdo_number<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u8>, D::Error> {
+    let number = Option::<u8>::deserialize(deserializer)?;
+    number.map(|number| within(number, 1, 4)).transpose()
+}
+
 pub(crate) fn pdo_data<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Bytes, D::Error> {
     let bytes = Bytes::deserialize(deserializer)?;
     if bytes.0.len() <= 8 {

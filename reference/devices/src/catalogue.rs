@@ -5,7 +5,7 @@ use std::fmt;
 use fieldproof_link::{Framing, Participant, SerialSettings};
 
 use crate::teco_jn5_cm_can::Behaviour as GatewayBehaviour;
-use crate::{canopen, modbus};
+use crate::{canopen, drive, modbus};
 
 /// A kind of reference device.
 #[derive(Debug, Clone, Copy)]
@@ -75,7 +75,7 @@ pub struct Fault {
     /// What one sees, in the words of a bug report.
     pub words: &'static str,
     /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
-    /// `sync`, `time`, `store`, `emergency`, `robustness`, `gateway`.
+    /// `sync`, `time`, `store`, `emergency`, `robustness`, `gateway`, `cia402`.
     pub caught_by: &'static str,
     pub(crate) apply: fn(&mut Behaviour),
 }
@@ -118,6 +118,8 @@ pub struct Behaviour {
     pub speed_sign_on_can: modbus::SpeedSign,
     /// A gateway between the two.
     pub gateway: GatewayBehaviour,
+    /// A drive behind it.
+    pub drive: drive::Behaviour,
 }
 
 /// The device has no fault or variant of this name.

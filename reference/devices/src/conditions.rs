@@ -46,6 +46,11 @@ impl Conditions {
         }
     }
 
+    /// Whether the panel has control.
+    pub(crate) fn is_local(&self) -> bool {
+        self.local_control
+    }
+
     pub(crate) fn state(&self) -> [(String, String); 2] {
         [
             ("hardware-fault", self.hardware_fault),

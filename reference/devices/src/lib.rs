@@ -8,7 +8,7 @@ pub mod canopen;
 mod canopen_complete;
 pub mod catalogue;
 mod conditions;
-mod drive;
+pub mod drive;
 mod huacheng_ssts1;
 pub mod inverter;
 mod kinco_servo;

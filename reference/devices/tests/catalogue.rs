@@ -9,8 +9,9 @@ use fieldproof_can::{Frame, StandardId};
 use fieldproof_devices::{DeviceKind, Settings, kind, kinds};
 use fieldproof_link::{Instant, Outbox, Participant, Reception, Stimulus, Transmission};
 
-const SUITES: [&str; 13] = [
+const SUITES: [&str; 14] = [
     "boot-up",
+    "cia402",
     "emergency",
     "error-control",
     "gateway",

@@ -5,7 +5,7 @@ mod show;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use fieldproof_record::{Event, Sink, Verdict, VerdictCounts};
@@ -57,18 +57,17 @@ enum Guise {
 }
 
 /// One device in one guise, to be played with all suites.
-struct Round<'l> {
-    device: &'l Device,
+struct Round {
+    device: Arc<Device>,
     guise: Guise,
     breaks: &'static str,
     behaviour: Behaviour,
 }
 
-fn rounds<'l>(
-    library: &'l Library,
-    plan: &Plan,
-    options: &ProveOptions,
-) -> Result<Vec<Round<'l>>, Complaint> {
+/// A fault that is not one of a single value shows in any row of a walk, or in none: so many are played.
+const ROWS_OF_A_WALK: u16 = 8;
+
+fn rounds(library: &Library, plan: &Plan, options: &ProveOptions) -> Result<Vec<Round>, Complaint> {
     let devices: Vec<&Device> = library
         .devices
         .iter()
@@ -81,9 +80,16 @@ fn rounds<'l>(
     faults_must_be_known(&devices, &options.faults)?;
     let mut rounds = Vec::new();
     for device in devices {
+        let whole = Arc::new(device.clone());
+        let sampled = Arc::new(device.with_some_of_each(&library.suites, ROWS_OF_A_WALK));
         let mut round = |guise, breaks, fault: Option<&str>, variant: Option<&str>| {
+            let of_value = fault.is_some_and(|name| object_faults::of(device, name).is_some());
+            let device = match fault.is_some() && !of_value {
+                true => &sampled,
+                false => &whole,
+            };
             rounds.push(Round {
-                device,
+                device: Arc::clone(device),
                 guise,
                 breaks,
                 behaviour: Behaviour {
@@ -199,7 +205,7 @@ impl Tally {
 
 /// Plays one round. A device that cannot be put back stops its lane; the cases after that one are played on a fresh
 /// device, for each is to show what it catches.
-fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally, Complaint> {
+fn play_round(plan: &Plan, round: &Round, stop: &AtomicBool) -> Result<Tally, Complaint> {
     let mut tally = Tally::default();
     let mut plan = Plan {
         behaviour: round.behaviour.clone(),
@@ -208,7 +214,7 @@ fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally
     loop {
         let stops = tally.stops.len();
         let tried = tally.tried.len();
-        player::play(round.device, &plan, &mut tally, stop)
+        player::play(&round.device, &plan, &mut tally, stop)
             .map_err(|error| Complaint::bench(error.to_string()))?;
         let whole = tally.stops.len() == stops;
         let nothing_new = tally.tried.len() == tried;
@@ -222,7 +228,7 @@ fn play_round(plan: &Plan, round: &Round<'_>, stop: &AtomicBool) -> Result<Tally
 /// Plays all rounds, as many at once as there are processors.
 fn play_all(
     plan: &Plan,
-    rounds: &[Round<'_>],
+    rounds: &[Round],
     stop: &AtomicBool,
     shown: bool,
 ) -> Result<Vec<Tally>, Complaint> {
@@ -300,7 +306,7 @@ impl Finding {
     }
 }
 
-fn judge(rounds: &[Round<'_>], tallies: &[Tally]) -> Proof {
+fn judge(rounds: &[Round], tallies: &[Tally]) -> Proof {
     let mut findings: Vec<Finding> = Vec::new();
     let mut played: BTreeSet<String> = BTreeSet::new();
     let mut caught: BTreeSet<String> = BTreeSet::new();

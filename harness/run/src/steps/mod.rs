@@ -1,6 +1,7 @@
 //! What each verb does. One file a family of verbs.
 
 mod bench;
+mod drive;
 mod flood;
 mod frames;
 mod modbus;
@@ -36,6 +37,8 @@ impl Tester<'_> {
             Step::SendRpdo(step) => self.send_rpdo(step),
             Step::SdoRead(step) => self.sdo_read(step),
             Step::SdoWrite(step) => self.sdo_write(step),
+            Step::DriveEnter(target) => self.drive_enter(*target),
+            Step::ExpectDrive(step) => self.expect_drive(step),
             Step::Modbus(step) => self.modbus(step),
             Step::SendBytes(step) => self.send_raw_bytes(step),
             Step::ExpectBytes(step) => self.expect_bytes(step),
@@ -68,12 +71,14 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
         Step::ExpectTpdo(step) => step.check.as_deref(),
         Step::SdoRead(step) => step.check.as_deref(),
         Step::SdoWrite(step) => step.check.as_deref(),
+        Step::ExpectDrive(step) => step.check.as_deref(),
         Step::Modbus(step) => step.check.as_deref(),
         Step::ExpectBytes(step) => step.check.as_deref(),
         Step::Send(_)
         | Step::Flood(_)
         | Step::Nmt(_)
         | Step::NmtEnter(_)
+        | Step::DriveEnter(_)
         | Step::ExpectBootUp(_)
         | Step::ExpectHeartbeat(_)
         | Step::Sync(_)
@@ -89,5 +94,5 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
 
 /// Whether a step only prepares: when it does not succeed, nothing was judged.
 pub(crate) fn is_precondition(step: &Step) -> bool {
-    matches!(step, Step::NmtEnter(_))
+    matches!(step, Step::NmtEnter(_) | Step::DriveEnter(_))
 }

@@ -14,8 +14,27 @@ use crate::stop::{Came, Stop};
 use crate::tester::Tester;
 use crate::value::{Actual, decode, encode, resolve, size};
 
+/// Between two reads of an object that takes its time.
+pub(super) const LOOK: Duration = Duration::from_millis(10);
+
 impl Tester<'_> {
     pub(super) fn sdo_read(&mut self, step: &SdoRead) -> Result<(), Stop> {
+        let until = self.session.now() + step.settles.unwrap_or_default();
+        loop {
+            match self.sdo_read_once(step) {
+                Err(Stop::Mismatch(mismatch))
+                    if matches!(mismatch.came, Came::Value(_) | Came::Answer)
+                        && self.session.now() < until =>
+                {
+                    let next = self.session.now() + LOOK;
+                    self.session.collect_until(next)?;
+                }
+                done => return done,
+            }
+        }
+    }
+
+    fn sdo_read_once(&mut self, step: &SdoRead) -> Result<(), Stop> {
         let object = self.resolve(step.object)?;
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
         let value = match self.upload_by(object, step.transfer, within)? {

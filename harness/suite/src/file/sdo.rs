@@ -41,6 +41,10 @@ pub(crate) struct SdoReadFile {
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
     within: Option<Duration>,
+    /// It is read again and again until it is what is expected, for so long at the most.
+    #[serde(default, deserialize_with = "optional_time")]
+    #[schemars(with = "Option<Time>")]
+    settles: Option<Duration>,
     /// Keeps the value under this name for later steps.
     #[serde(default)]
     save: Option<String>,
@@ -236,6 +240,7 @@ impl TryFrom<SdoReadFile> for SdoRead {
             value_type: file.value_type,
             expect,
             within: file.within,
+            settles: file.settles,
             save: file.save,
             observe: file.observe,
             check: file.check,

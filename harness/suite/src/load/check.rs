@@ -4,8 +4,8 @@
 use super::CaseTemplate;
 use crate::code;
 use crate::model::{
-    Case, Effect, Located, ModbusRequest, Need, NmtAddress, NmtCommand, PowerAction, Protocol,
-    Step, Stimulate, StimulusName, SuiteHead,
+    Case, DriveTarget, Effect, Located, ModbusRequest, Need, NmtAddress, NmtCommand, PowerAction,
+    Protocol, Step, Stimulate, StimulusName, SuiteHead,
 };
 use crate::problem::Problem;
 
@@ -99,11 +99,13 @@ fn can_fail(step: &Step) -> bool {
         | Step::ExpectBytes(_)
         | Step::SdoRead(_)
         | Step::SdoWrite(_)
+        | Step::ExpectDrive(_)
         | Step::Modbus(_) => true,
         Step::Send(_)
         | Step::Flood(_)
         | Step::Nmt(_)
         | Step::NmtEnter(_)
+        | Step::DriveEnter(_)
         | Step::Sync(_)
         | Step::StartSync(_)
         | Step::StopSync
@@ -210,6 +212,10 @@ fn check_needs(case: &Case, step: &Located<Step>, problems: &mut Vec<Problem>) {
 fn effect_of(step: &Step) -> Option<(Effect, &'static str, &'static str)> {
     match step {
         Step::SdoWrite(_) => Some((Effect::Writes, "writes", "writes an object")),
+        Step::DriveEnter(DriveTarget::OperationEnabled) => {
+            Some((Effect::Moves, "moves", "enables a drive"))
+        }
+        Step::DriveEnter(_) => Some((Effect::Writes, "writes", "writes a controlword")),
         Step::Modbus(modbus) => match modbus.request {
             ModbusRequest::WriteSingle { .. } | ModbusRequest::WriteMultiple { .. } => {
                 Some((Effect::Writes, "writes", "writes a register"))

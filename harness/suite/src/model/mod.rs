@@ -2,6 +2,7 @@
 //! reads into these.
 
 mod canopen;
+mod drive;
 mod flood;
 mod frames;
 mod modbus;
@@ -12,6 +13,7 @@ mod stimulate;
 mod suite;
 
 pub use canopen::*;
+pub use drive::*;
 pub use flood::*;
 pub use frames::*;
 pub use modbus::*;

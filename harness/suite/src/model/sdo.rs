@@ -24,6 +24,8 @@ pub struct SdoRead {
     pub expect: ReadExpectation,
     /// How long after the request; else what the description promises.
     pub within: Option<Duration>,
+    /// It is read again and again until it is what is expected, for so long at the most.
+    pub settles: Option<Duration>,
     /// Keeps the value under this name for later steps.
     pub save: Option<String>,
     /// Records the value as an observation with these words.

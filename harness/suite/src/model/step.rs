@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    Expect, ExpectBootUp, ExpectBytes, ExpectHeartbeat, ExpectSilence, ExpectState, ExpectTpdo,
-    Flood, Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync,
-    Stimulate, Sync,
+    DriveTarget, Expect, ExpectBootUp, ExpectBytes, ExpectDrive, ExpectHeartbeat, ExpectSilence,
+    ExpectState, ExpectTpdo, Flood, Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite, Send,
+    SendBytes, SendRpdo, StartSync, Stimulate, Sync,
 };
 use crate::forms::{either, either_schema};
 use crate::read_with::{bit_rate, read_later, times};
@@ -70,6 +70,11 @@ pub enum Step {
     SdoRead(SdoRead),
     /// `sdo-write: {object: "1017:00", as: u16, value: 100 ms, unit: 1 ms}`; put back after the case.
     SdoWrite(SdoWrite),
+    /// `drive-enter: operation-enabled`: brings a drive into a state by its controlword and makes sure; if it cannot, the
+    /// case is inconclusive.
+    DriveEnter(DriveTarget),
+    /// `expect-drive: {is: ready-to-switch-on, within: 1 s}`: what the statusword says.
+    ExpectDrive(ExpectDrive),
     /// `modbus: {read-holding: {address: 0, count: 1}, expect: {registers: [1]}}`; writes are put back after the case.
     Modbus(Modbus),
     /// `send-bytes: {bytes: "20 03 00 00 00 01", crc: append}`.

@@ -39,7 +39,7 @@ mod write;
 pub(crate) use abort::Abort;
 pub(crate) use address::Address;
 pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, StateCodes};
-pub(crate) use emergency::HARDWARE;
+pub(crate) use emergency::{DeviceError, HARDWARE};
 pub use lss_departures::LssDepartures;
 use nmt::State;
 pub use object_fault::{ObjectFault, ObjectFaultKind};

@@ -5,6 +5,7 @@ use std::fmt;
 use fieldproof_dictionary::{Access, Dictionary};
 
 use super::Address;
+use super::emergency::ERROR_HISTORY;
 
 /// One value that is not as the dictionary says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,9 +121,10 @@ impl ObjectFault {
         match self.kind {
             ObjectFaultKind::Missing => true,
             ObjectFaultKind::Surplus => false,
-            // What is read-only may change by itself.
+            // What is read-only may change by itself, and 1003h tells what has happened.
             ObjectFaultKind::WrongDefault => {
-                let stays = access != Access::ReadOnly && access.readable();
+                let changes = access == Access::ReadOnly || self.address.index() == ERROR_HISTORY;
+                let stays = !changes && access.readable();
                 entry.default.is_some() && stays
             }
             ObjectFaultKind::WrongSize => entry.data_type.bytes().is_some() && access.readable(),

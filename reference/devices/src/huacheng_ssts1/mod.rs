@@ -11,11 +11,11 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
 };
 
-use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{self, Address, Factory, Profile, TransmitEvent, faults};
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
-use crate::drive::Drive;
+use crate::drive::{self, DriveNode, Model};
 use crate::modbus::{self, ModbusSlave};
 use registers::DriveRegisters;
 
@@ -35,8 +35,27 @@ const OWN_FAULTS: &[Fault] = &[
     faults::EMERGENCY_WITHOUT_REGISTER,
     modbus::faults::WRITE_MULTIPLE_FORGETS,
 ];
-const FAULTS: [Fault; faults::COMMON.len() + modbus::faults::COMMON.len() + OWN_FAULTS.len()] =
-    all_of(&[faults::COMMON, modbus::faults::COMMON, OWN_FAULTS]);
+const FAULTS: [Fault;
+    faults::COMMON.len()
+        + modbus::faults::COMMON.len()
+        + OWN_FAULTS.len()
+        + drive::faults::COMMON.len()
+        + drive::faults::VALUES.len()] = all_of(&[
+    faults::COMMON,
+    modbus::faults::COMMON,
+    OWN_FAULTS,
+    drive::faults::COMMON,
+    drive::faults::VALUES,
+]);
+
+/// Section 4.3 names the modes: profile position, velocity and torque, homing, and the cyclic synchronous ones. The
+/// unit of velocity is rpm; ten thousand pulses are a revolution of the motor that section 1 has its defaults for.
+const MODEL: Model = Model {
+    modes: &[1, 3, 4, 6, 8, 9, 10],
+    position: Address::new(0x6064, 0),
+    counts_a_second: (10_000, 60),
+    alarm: Some(Address::new(0x2100, 0)),
+};
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -63,6 +82,11 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
+        drive::variants::BRAKE,
+        drive::variants::ENABLED_STEP_BY_STEP,
+        drive::variants::QUICK_STOP_BIT_AT_REST,
+        drive::variants::MODE_SWITCHED_LATER,
+        drive::variants::UNSUPPORTED_MODE_PASSED_OVER,
     ],
     build,
 };
@@ -109,12 +133,10 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
     };
     let address = settings.address.unwrap_or(registers::ADDRESS);
     let registers = DriveRegisters::new(address, registers::LINE);
-    let mut drive = Drive::default();
-    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut drive);
+    let modbus = ModbusSlave::new(registers, behaviour.modbus.clone(), settings.seed);
     Ok(Box::new(HuachengSsts1 {
-        slave,
-        drive,
-        modbus: ModbusSlave::new(registers, behaviour.modbus, settings.seed).over(settings.framing),
+        node: DriveNode::new(&MODEL, profile(), behaviour, factory),
+        modbus: modbus.over(settings.framing),
         powered: true,
     }))
 }
@@ -122,8 +144,7 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
 /// The drive on its two ports.
 #[derive(Debug)]
 struct HuachengSsts1 {
-    slave: Slave,
-    drive: Drive,
+    node: DriveNode,
     modbus: ModbusSlave<DriveRegisters>,
     powered: bool,
 }
@@ -135,13 +156,13 @@ impl HuachengSsts1 {
             self.modbus.registers_mut().power_on();
         }
         self.modbus.restart();
-        self.slave.power(now, on, &mut self.drive);
+        self.node.power(now, on);
     }
 
     fn switch(&mut self, now: Instant, name: &str, value: i64) -> Result<(), NotOffered> {
         match name {
-            "node" => self.slave.set_node(now, value),
-            "bit-rate" => self.slave.set_bit_rate(value, BIT_RATES),
+            "node" => self.node.slave.set_node(now, value),
+            "bit-rate" => self.node.slave.set_bit_rate(value, BIT_RATES),
             "address" => self.modbus.registers_mut().set_address(value),
             "baud" => {
                 self.modbus.registers_mut().set_baud(value)?;
@@ -157,7 +178,7 @@ impl Participant for HuachengSsts1 {
     fn line(&self, port: usize) -> Line {
         match port {
             SERIAL if self.powered => self.modbus.line(),
-            CAN => self.slave.line(),
+            CAN => self.node.slave.line(),
             _ => Line::Off,
         }
     }
@@ -165,7 +186,7 @@ impl Participant for HuachengSsts1 {
     fn receive(&mut self, now: Instant, port: usize, reception: Reception, _: &mut Outbox) {
         match (port, reception) {
             (CAN, Reception::Frame(frame)) => {
-                self.slave.receive(now, &frame, &mut self.drive);
+                self.node.receive(now, &frame);
             }
             (SERIAL, Reception::Character(character)) if self.powered => {
                 self.modbus.receive(now, character);
@@ -176,11 +197,11 @@ impl Participant for HuachengSsts1 {
 
     fn wake_at(&self) -> Option<Instant> {
         let serial = self.modbus.wake_at().filter(|_| self.powered);
-        [self.slave.wake_at(), serial].into_iter().flatten().min()
+        [self.node.wake_at(), serial].into_iter().flatten().min()
     }
 
     fn wake(&mut self, now: Instant, out: &mut Outbox) {
-        self.slave.wake(now, CAN, &mut self.drive, out);
+        self.node.wake(now, CAN, out);
         if self.powered
             && self.modbus.wake_at().is_some_and(|at| at <= now)
             && let Some(characters) = self.modbus.wake(now)
@@ -199,15 +220,14 @@ impl Participant for HuachengSsts1 {
         match stimulus {
             Stimulus::Power { on } => self.power(now, *on),
             Stimulus::ProcessValue { name, value } if name.contains(':') => {
-                self.slave.set_process_value(name, *value)?;
+                self.node.slave.set_process_value(name, *value)?;
             }
             Stimulus::ProcessValue { name, value } => {
                 let registers = self.modbus.registers_mut();
                 registers.set_process_value(name, *value)?;
             }
             Stimulus::Condition { name, active } => {
-                let slave = &mut self.slave;
-                self.drive.conditions.set(now, name, *active, slave)?;
+                self.node.set_condition(now, name, *active)?;
             }
             Stimulus::Setting { name, value } => self.switch(now, name, *value)?,
         }
@@ -225,8 +245,7 @@ impl Participant for HuachengSsts1 {
 
     fn state(&self) -> BTreeMap<String, String> {
         use modbus::Registers as _;
-        let mut state = self.slave.state();
-        state.extend(self.drive.conditions.state());
+        let mut state = self.node.state();
         state.extend(self.modbus.registers().state());
         state
     }

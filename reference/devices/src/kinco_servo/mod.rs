@@ -9,11 +9,11 @@ use fieldproof_link::{
     Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
 };
 
-use crate::canopen::{self, Factory, Profile, Slave, TransmitEvent, faults};
+use crate::canopen::{self, Address, Factory, Profile, TransmitEvent, faults};
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
 };
-use crate::drive::Drive;
+use crate::drive::{self, DriveNode, Model};
 
 const NODE: u8 = 1;
 const BIT_RATE: u32 = 500_000;
@@ -29,8 +29,24 @@ const OWN_FAULTS: &[Fault] = &[
     faults::GUARDING_TOGGLE_STUCK,
     faults::MAPPING_ENTRY_BYTE_ORDER,
 ];
-const FAULTS: [Fault; faults::COMMON.len() + OWN_FAULTS.len()] =
-    all_of(&[faults::COMMON, OWN_FAULTS]);
+const FAULTS: [Fault;
+    faults::COMMON.len()
+        + OWN_FAULTS.len()
+        + drive::faults::COMMON.len()
+        + drive::faults::OPTIONS.len()] = all_of(&[
+    faults::COMMON,
+    OWN_FAULTS,
+    drive::faults::COMMON,
+    drive::faults::OPTIONS,
+]);
+
+/// The slides have what profile position (607Ah, 6081h) and profile velocity (60FFh) need, and no other mode.
+const MODEL: Model = Model {
+    modes: &[1, 3],
+    position: Address::new(0x6063, 0),
+    counts_a_second: (1, 1),
+    alarm: None,
+};
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -51,6 +67,12 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::REMOTE_FRAMES_IGNORED,
         canopen::variants::HEARTBEAT_AT_ONCE,
         canopen::variants::SLOW,
+        drive::variants::BRAKE,
+        drive::variants::ENABLED_STEP_BY_STEP,
+        drive::variants::QUICK_STOP_NOT_RESUMED,
+        drive::variants::QUICK_STOP_BIT_AT_REST,
+        drive::variants::MODE_SWITCHED_LATER,
+        drive::variants::UNSUPPORTED_MODE_PASSED_OVER,
     ],
     build,
 };
@@ -98,35 +120,33 @@ fn build(settings: &Settings) -> Result<Box<dyn Participant>, UnknownFault> {
         bit_rate: BIT_RATE,
         seed: settings.seed,
     };
-    let mut drive = Drive::default();
-    let slave = Slave::new(profile(), behaviour.canopen, factory, &mut drive);
-    Ok(Box::new(KincoServo { slave, drive }))
+    let node = DriveNode::new(&MODEL, profile(), behaviour, factory);
+    Ok(Box::new(KincoServo { node }))
 }
 
 /// The drive on its bus.
 #[derive(Debug)]
 struct KincoServo {
-    slave: Slave,
-    drive: Drive,
+    node: DriveNode,
 }
 
 impl Participant for KincoServo {
     fn line(&self, _: usize) -> Line {
-        self.slave.line()
+        self.node.slave.line()
     }
 
     fn receive(&mut self, now: Instant, _: usize, reception: Reception, _: &mut Outbox) {
         if let Reception::Frame(frame) = reception {
-            self.slave.receive(now, &frame, &mut self.drive);
+            self.node.receive(now, &frame);
         }
     }
 
     fn wake_at(&self) -> Option<Instant> {
-        self.slave.wake_at()
+        self.node.wake_at()
     }
 
     fn wake(&mut self, now: Instant, out: &mut Outbox) {
-        self.slave.wake(now, PORT, &mut self.drive, out);
+        self.node.wake(now, PORT, out);
     }
 
     fn stimulate(
@@ -136,18 +156,16 @@ impl Participant for KincoServo {
         _: &mut Outbox,
     ) -> Result<(), NotOffered> {
         match stimulus {
-            Stimulus::Power { on } => self.slave.power(now, *on, &mut self.drive),
+            Stimulus::Power { on } => self.node.power(now, *on),
             Stimulus::ProcessValue { name, value } => {
-                self.slave.set_process_value(name, *value)?;
+                self.node.slave.set_process_value(name, *value)?;
             }
             Stimulus::Condition { name, active } => {
-                self.drive
-                    .conditions
-                    .set(now, name, *active, &mut self.slave)?;
+                self.node.set_condition(now, name, *active)?;
             }
             Stimulus::Setting { name, value } => match name.as_str() {
-                "node" => self.slave.set_node(now, *value)?,
-                "bit-rate" => self.slave.set_bit_rate(*value, BIT_RATES)?,
+                "node" => self.node.slave.set_node(now, *value)?,
+                "bit-rate" => self.node.slave.set_bit_rate(*value, BIT_RATES)?,
                 _ => return Err(NotOffered),
             },
         }
@@ -164,9 +182,7 @@ impl Participant for KincoServo {
     }
 
     fn state(&self) -> BTreeMap<String, String> {
-        let mut state = self.slave.state();
-        state.extend(self.drive.conditions.state());
-        state
+        self.node.state()
     }
 }
 
