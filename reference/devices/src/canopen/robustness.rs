@@ -11,7 +11,7 @@ use super::queue::identifier;
 use super::{Application, Slave};
 
 /// Two frames that follow each other within this time belong to one burst.
-const BURST_GAP: Duration = Duration::from_micros(800);
+const BURST_GAP: Duration = Duration::from_millis(1);
 /// How many frames of a burst a small receive buffer holds.
 const RECEIVE_BUFFER: u32 = 64;
 /// How many frames for nobody a leak survives.
