@@ -5,6 +5,7 @@ mod catalogues;
 mod identity;
 mod near;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,8 +19,8 @@ use fieldproof_run::{Known, fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
 use fieldproof_suite::device::{DeviceDescription, PortDescription};
-use fieldproof_suite::model::{Effect, StimulusName};
-use fieldproof_suite::{Diagnostic, SourceFile, Suite};
+use fieldproof_suite::model::{Effect, Located, StimulusName};
+use fieldproof_suite::{Diagnostic, Position, SourceFile, Suite};
 
 use crate::bench;
 use crate::complaint::{Complaint, with_choice};
@@ -30,6 +31,9 @@ use crate::problems;
 use benches::is_bench;
 use catalogues::is_catalogue;
 
+/// Index and sub-index.
+const SERIAL_NUMBER: (u16, u8) = (0x1018, 4);
+
 /// A device with everything that is known of it.
 #[derive(Clone)]
 pub struct Device {
@@ -39,6 +43,8 @@ pub struct Device {
     pub dictionary: Option<Dictionary>,
     /// Its register map, if it has a Modbus side of which that is known.
     pub registers: Option<RegisterMap>,
+    /// The bit rates that its EDS claims.
+    pub bit_rates_kbit_per_s: BTreeSet<u32>,
     /// The reference device of that name; without one, the device cannot be simulated.
     pub kind: Option<&'static DeviceKind>,
     /// Where a bench has it.
@@ -67,6 +73,24 @@ impl Device {
     pub fn is_simulated(&self) -> bool {
         let links = self.place.as_ref().map(|place| &place.links);
         links.is_none_or(|links| links.values().all(|link| link.kind == LinkKind::Sim))
+    }
+
+    /// What is claimed of the unit that is tested: the serial number of a simulated one is that of its EDS.
+    pub(crate) fn description_of_unit(&self) -> Cow<'_, DeviceDescription> {
+        let serial_number = self.dictionary.as_ref().and_then(|dictionary| {
+            let entry = dictionary.entry(SERIAL_NUMBER.0, SERIAL_NUMBER.1)?;
+            let bytes = entry.default_bytes(0)?.try_into().ok()?;
+            Some(u32::from_le_bytes(bytes))
+        });
+        if !self.is_simulated() || self.description.identity.serial_number.is_some() {
+            return Cow::Borrowed(&self.description);
+        }
+        let mut description = self.description.clone();
+        description.identity.serial_number = serial_number.map(|value| Located {
+            value,
+            at: Position::default(),
+        });
+        Cow::Owned(description)
     }
 
     /// The faults its reference device can have; nothing can be switched on in a real device.
@@ -100,6 +124,7 @@ impl Device {
         Known {
             dictionary: self.dictionary.as_ref(),
             registers: self.registers.as_ref(),
+            bit_rates_kbit_per_s: Some(&self.bit_rates_kbit_per_s),
         }
     }
 
@@ -406,15 +431,16 @@ impl Reader {
         };
         let kind = fieldproof_devices::kind(&description.device);
         self.ports(&description, kind, &file.path);
-        let dictionary = description
+        let (dictionary, bit_rates) = description
             .canopen
             .as_ref()
             .and_then(|canopen| self.eds(folder, &canopen.eds))
             .map(|(eds, path)| {
                 let contradictions = identity::contradictions(&description, file, &eds, &path);
                 self.problems.extend(contradictions);
-                eds.dictionary
-            });
+                (eds.dictionary, eds.device_info.bit_rates_kbit_per_s)
+            })
+            .unzip();
         let map = description
             .modbus
             .as_ref()
@@ -425,6 +451,7 @@ impl Reader {
             description,
             dictionary,
             registers,
+            bit_rates_kbit_per_s: bit_rates.unwrap_or_default(),
             kind,
             place: None,
             suites: Vec::new(),

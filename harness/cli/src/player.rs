@@ -98,11 +98,12 @@ pub fn play(
         depth: plan.depth,
         ..bench::bench(device, lane, &plan.permits)
     };
+    let description = device.description_of_unit();
     let behaviour = &plan.behaviour;
     let job = LaneJob {
         tool: TOOL,
         name: device.name(),
-        device: &device.description,
+        device: &description,
         dictionary: device.dictionary.as_ref(),
         bench: &bench,
         suites: &device.suites,
@@ -151,6 +152,7 @@ pub(crate) fn preview<'l>(
     let environment = Environment {
         node: bench.node,
         address: bench.address,
+        identity: device.description_of_unit().identity.numbers(),
     };
     let planned = |suite: &'l Suite| {
         let cases = suite.cases().filter(|case| plan.selects(&case.id()));
@@ -193,7 +195,7 @@ fn plan_case(
     let skipped = skip_reason(
         &lowered,
         protocol,
-        &device.description,
+        &device.description_of_unit(),
         device.dictionary.as_ref(),
         bench,
     );

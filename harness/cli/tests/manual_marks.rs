@@ -37,6 +37,7 @@ fn cases(device: &str) -> Vec<Case> {
     let any = Environment {
         node: Some(1),
         address: Some(1),
+        ..Environment::default()
     };
     load(&files)
         .suites

@@ -103,10 +103,12 @@ fn cases(device: &str) -> Vec<Case> {
     let environment = |case: &Case| Environment {
         node: case.written_for.node,
         address: case.written_for.address,
+        ..Environment::default()
     };
     let any = Environment {
         node: Some(1),
         address: Some(1),
+        ..Environment::default()
     };
     suites(device)
         .iter()

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use fieldproof_dictionary::Dictionary;
 use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature, FunctionCode, PortDescription};
+use fieldproof_suite::identity::Claim;
 use fieldproof_suite::model::{
     Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
     SendBytes, Step, Stimulate, StimulusName,
@@ -193,6 +194,10 @@ fn rtu_step(step: &Step, bench: &Bench) -> Option<String> {
 
 fn missing_claim(case: &Case, device: &DeviceDescription) -> Option<String> {
     let steps = case.control.iter().chain(&case.steps);
+    let unclaimed = |claim: &&Claim| device.identity.claimed(**claim).is_none();
+    if let Some(claim) = case.claims.iter().find(unclaimed) {
+        return Some(format!("the device does not claim its {}", claim.name()));
+    }
     expects_unclaimed(steps, device)
         .then(|| "the device does not claim this part of its identity".to_owned())
 }
@@ -312,6 +317,8 @@ pub const fn feature_name(feature: Feature) -> &'static str {
         Feature::TimeConsumer => "time-consumer",
         Feature::TimeProducer => "time-producer",
         Feature::Lss => "lss",
+        Feature::LssIdentify => "lss-identify",
+        Feature::LssActivateBitTiming => "lss-activate-bit-timing",
         Feature::LssFastscan => "lss-fastscan",
         Feature::RemoteFrames => "remote-frames",
         Feature::Cia402 => "cia402",

@@ -1,12 +1,15 @@
 //! What a device has of what a case asks for: by its object dictionary, its register map, its description.
 
 mod absent;
+mod bit_rate;
 mod function;
 mod object;
 mod pdo;
 mod register;
 #[cfg(test)]
 mod tests;
+
+use std::collections::BTreeSet;
 
 use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::registers::RegisterMap;
@@ -21,6 +24,8 @@ pub struct Known<'a> {
     pub dictionary: Option<&'a Dictionary>,
     /// Its register map.
     pub registers: Option<&'a RegisterMap>,
+    /// The bit rates that its EDS claims.
+    pub bit_rates_kbit_per_s: Option<&'a BTreeSet<u32>>,
 }
 
 /// `suite` with its tables filled from what is known of a device.
@@ -43,6 +48,8 @@ fn find(query: &Query, device: &DeviceDescription, known: Known<'_>) -> Vec<Colu
         QueryKind::Tpdo | QueryKind::Rpdo => known.dictionary.map(|it| pdo::pdos(query, it, node)),
         QueryKind::Register => known.registers.map(|it| register::registers(query, it)),
         QueryKind::Hole => known.registers.map(|it| register::holes(query, it)),
+        QueryKind::BitRate => bit_rate::bit_rates(device, known, false),
+        QueryKind::OtherBitRate => bit_rate::bit_rates(device, known, true),
         QueryKind::Function => device
             .modbus
             .as_ref()

@@ -161,6 +161,7 @@ impl<'a> Player<'a> {
             environment: Environment {
                 node: job.bench.node.or(Some(1)),
                 address: job.bench.address.or(Some(1)),
+                identity: job.device.identity.numbers(),
             },
             as_found: None,
             last_state: None,

@@ -291,6 +291,11 @@ impl<'a> Session<'a> {
         std::mem::take(&mut self.inbox)
     }
 
+    /// Forgets what came and was not expected yet, where `which` says so.
+    pub(crate) fn forget(&mut self, which: impl Fn(&Received) -> bool) {
+        self.inbox.retain(|received| !which(received));
+    }
+
     /// The first thing since the last send that `wanted` accepts, now or until `deadline`. What it does not accept
     /// stays for later expectations.
     pub(crate) fn first(

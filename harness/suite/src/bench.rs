@@ -32,6 +32,8 @@ pub struct BenchDevice {
     pub node: Option<Located<u8>>,
     /// Its Modbus address here; without one, that of the description.
     pub address: Option<Located<u8>>,
+    /// The serial number of the unit that stands here, where the description claims none.
+    pub serial_number: Option<Located<u32>>,
     /// The stimuli there are; without a list, those that the links offer by themselves.
     pub stimuli: Option<BTreeSet<StimulusName>>,
     /// The program that gives them on real links, with its first arguments; without one, an operator is asked.

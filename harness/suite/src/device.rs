@@ -257,6 +257,10 @@ pub enum Feature {
     TimeProducer,
     /// LSS slave.
     Lss,
+    /// LSS slaves that are asked for by their identity, or for having no node-ID, identify themselves.
+    LssIdentify,
+    /// A bit rate becomes active over LSS, with no reset.
+    LssActivateBitTiming,
     /// LSS fastscan.
     LssFastscan,
     /// A remote frame fetches a TPDO whose COB-ID allows it.

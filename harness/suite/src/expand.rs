@@ -5,6 +5,8 @@
 //! | `{period}` | the cell of the column `period` in the row of the table |
 //! | `{node}`, `{address}` | the node-ID or the Modbus address of the device; in frames and bytes two digits |
 //! | `{580+node}` | 580h and the node-ID; in frames with the digits of `580` |
+//! | `{serial-number:u32le}` | a number of the identity that the description claims |
+//! | `{80000000+serial-number:u32le}`, `{FF000000&serial-number:u32le}` | with a number added, or only these bits of it |
 //! | `{speed:i32le}` | the number `speed` as the bytes of a signed 32-bit number, low byte first |
 //! | `{device_type}` | the value that an earlier step saved; only where a value stands |
 
@@ -12,6 +14,7 @@ use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 
+use crate::identity::Claim;
 use crate::node::{Kind, Node};
 use crate::problem::{Problem, with_nearest};
 use crate::scalar::whole_number;
@@ -24,10 +27,20 @@ pub struct Environment {
     pub node: Option<u8>,
     /// The Modbus address of the device, 1 to 247, if it has a Modbus side.
     pub address: Option<u8>,
+    /// The numbers that the device claims of its identity, as [`Claim::NUMBERS`] has them. One that it does not claim
+    /// is read as 0; the case says that it needs it ([`crate::model::Case::claims`]).
+    pub identity: [Option<u32>; 4],
 }
 
-/// The names that the bench gives; no column may have one.
-pub(crate) const BENCH_NAMES: [&str; 2] = ["node", "address"];
+/// The names that the bench and the description give; no column may have one.
+pub(crate) const BENCH_NAMES: [&str; 6] = [
+    "node",
+    "address",
+    Claim::VendorId.name(),
+    Claim::ProductCode.name(),
+    Claim::RevisionNumber.name(),
+    Claim::SerialNumber.name(),
+];
 
 /// The longest text that placeholders may make, in bytes.
 const LONGEST_TEXT: usize = 16 << 10;
@@ -60,18 +73,34 @@ pub(crate) enum Notation {
 pub(crate) struct Placeholder<'t> {
     /// Where it starts and ends, in bytes, braces included.
     range: (usize, usize),
-    /// The hexadecimal digits before a `+`.
-    base: Option<&'t str>,
+    /// The hexadecimal digits before a `+` or `&`, and which of them it is.
+    operand: Option<(&'t str, Operator)>,
     pub(crate) name: &'t str,
     /// What follows a `:`.
     format: Option<&'t str>,
+}
+
+/// What is done with a number and the digits before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Operator {
+    Plus,
+    And,
+}
+
+impl Operator {
+    const fn apply(self, number: i128, operand: u32) -> i128 {
+        match self {
+            Operator::Plus => number + operand as i128,
+            Operator::And => number & operand as i128,
+        }
+    }
 }
 
 /// The placeholders in a text, in order. Braces around anything else are ordinary text.
 pub(crate) fn placeholders(text: &str) -> impl Iterator<Item = Placeholder<'_>> {
     text.match_indices('{').filter_map(|(start, _)| {
         let inside = &text[start + 1..];
-        let length = inside.find(|c: char| !(c.is_ascii_alphanumeric() || "+:_-".contains(c)))?;
+        let length = inside.find(|c: char| !(c.is_ascii_alphanumeric() || "+&:_-".contains(c)))?;
         let end = start + 1 + length;
         if !text[end..].starts_with('}') {
             return None;
@@ -81,18 +110,22 @@ pub(crate) fn placeholders(text: &str) -> impl Iterator<Item = Placeholder<'_>> 
             Some((rest, format)) => (rest, Some(format)),
             None => (inside, None),
         };
-        let (base, name) = match rest.split_once('+') {
-            Some((base, name)) => (Some(base), name),
+        let (operand, name) = match rest.split_once(['+', '&']) {
+            Some((digits, name)) if rest[digits.len()..].starts_with('+') => {
+                (Some((digits, Operator::Plus)), name)
+            }
+            Some((digits, name)) => (Some((digits, Operator::And)), name),
             None => (None, rest),
         };
-        let is_hexadecimal =
-            |base: &str| !base.is_empty() && base.chars().all(|digit| digit.is_ascii_hexdigit());
+        let is_hexadecimal = |(digits, _): (&str, Operator)| {
+            !digits.is_empty() && digits.chars().all(|digit| digit.is_ascii_hexdigit())
+        };
         let well_formed = is_name(name)
-            && base.is_none_or(is_hexadecimal)
+            && operand.is_none_or(is_hexadecimal)
             && format.is_none_or(|format| format.chars().all(|c| c.is_ascii_alphanumeric()));
         well_formed.then_some(Placeholder {
             range: (start, end + 1),
-            base,
+            operand,
             name,
             format,
         })
@@ -195,9 +228,15 @@ impl<'a> Scope<'a> {
             (None, "address") => {
                 return bench_number(placeholder, self.environment.address, notation);
             }
-            (None, _) => return Err(self.unknown(name, in_cell)),
+            (None, _) => {
+                let identity = Claim::NUMBERS.into_iter().zip(self.environment.identity);
+                return match { identity }.find(|(claim, _)| claim.name() == name) {
+                    Some((_, number)) => identity_number(placeholder, number, notation),
+                    None => Err(self.unknown(name, in_cell)),
+                };
+            }
         };
-        if placeholder.base.is_none() && placeholder.format.is_none() {
+        if placeholder.operand.is_none() && placeholder.format.is_none() {
             return Ok(text.into_owned());
         }
         let number = whole_number(&text).ok_or_else(|| {
@@ -254,25 +293,56 @@ fn bench_number(
     }
 }
 
+/// A number of 32 bits: what is added to it may carry no further.
+fn identity_number(
+    placeholder: Placeholder<'_>,
+    number: Option<u32>,
+    notation: Notation,
+) -> Result<String, Box<Problem>> {
+    let number = i128::from(number.unwrap_or_default());
+    let number = match operand(placeholder)? {
+        Some((operand, operator, _)) => operator.apply(number, operand),
+        None => number,
+    };
+    written(placeholder, number & i128::from(u32::MAX), 8, notation)
+}
+
 fn number_in(
     placeholder: Placeholder<'_>,
     number: i128,
     notation: Notation,
 ) -> Result<String, Box<Problem>> {
-    let (number, digits) = match placeholder.base {
-        Some(base) => {
-            let base_number = u32::from_str_radix(base, 16).map_err(|_| {
-                let message = format!("`{base}` has more than 32 bits");
-                Problem::new(code::UNKNOWN_PLACEHOLDER, message, "too high")
-            })?;
-            (number + i128::from(base_number), base.len())
+    match operand(placeholder)? {
+        Some((operand, operator, digits)) => {
+            let number = operator.apply(number, operand);
+            written(placeholder, number, digits, notation)
         }
-        None => (number, 2),
+        None => written(placeholder, number, 2, notation),
+    }
+}
+
+/// The operand, what is done with it, and how many digits it has.
+fn operand(placeholder: Placeholder<'_>) -> Result<Option<(u32, Operator, usize)>, Box<Problem>> {
+    let Some((digits, operator)) = placeholder.operand else {
+        return Ok(None);
     };
+    let number = u32::from_str_radix(digits, 16).map_err(|_| {
+        let message = format!("`{digits}` has more than 32 bits");
+        Problem::new(code::UNKNOWN_PLACEHOLDER, message, "too high")
+    })?;
+    Ok(Some((number, operator, digits.len())))
+}
+
+fn written(
+    placeholder: Placeholder<'_>,
+    number: i128,
+    digits: usize,
+    notation: Notation,
+) -> Result<String, Box<Problem>> {
     match placeholder.format {
         Some(format) => bytes_of(number, format),
         None if notation == Notation::Hex => Ok(format!("{number:0digits$X}")),
-        None if placeholder.base.is_some() => Ok(format!("0x{number:X}")),
+        None if placeholder.operand.is_some() => Ok(format!("0x{number:X}")),
         None => Ok(number.to_string()),
     }
 }
@@ -342,6 +412,7 @@ mod tests {
             environment: Environment {
                 node: Some(10),
                 address: None,
+                identity: [Some(0xFFFF_FFFF), Some(0x1234_5678), None, Some(8)],
             },
             saved: BTreeSet::from(["kept".to_owned()]),
             saved_later: BTreeSet::from(["later".to_owned()]),
@@ -373,6 +444,15 @@ mod tests {
                 "FEFF FFFE FE",
             ),
             ("{high:u24be}", Hex, "011170"),
+            ("{serial-number}", Text, "8"),
+            ("{product-code:u32le}", Hex, "78563412"),
+            (
+                "{1+vendor-id:u32le} {1+serial-number}",
+                Hex,
+                "00000000 00000009",
+            ),
+            ("{FF00&product-code:u32be} {F&node}", Hex, "00005600 A"),
+            ("{revision-number:u32le}", Hex, "00000000"),
         ] {
             assert_eq!(replace(text, notation), Ok(expected.to_owned()), "{text}");
         }

@@ -61,6 +61,14 @@ pub enum Claim {
 }
 
 impl Claim {
+    /// Those that are numbers, in the order of 1018h.
+    pub const NUMBERS: [Claim; 4] = [
+        Claim::VendorId,
+        Claim::ProductCode,
+        Claim::RevisionNumber,
+        Claim::SerialNumber,
+    ];
+
     /// All of them, in the order of a description.
     pub const ALL: [Claim; 7] = [
         Claim::VendorId,
@@ -109,6 +117,17 @@ impl Claim {
 }
 
 impl Identity {
+    /// The numbers that are claimed, as [`Claim::NUMBERS`] has them.
+    pub fn numbers(&self) -> [Option<u32>; 4] {
+        let numbers = [
+            &self.vendor_id,
+            &self.product_code,
+            &self.revision_number,
+            &self.serial_number,
+        ];
+        numbers.map(|number| number.as_ref().map(|it| it.value))
+    }
+
     /// What is claimed, and where; `None` where nothing is.
     pub fn claimed(&self, claim: Claim) -> Option<Located<Value>> {
         let number = |claimed: &Option<Located<u32>>| {

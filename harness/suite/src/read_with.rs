@@ -135,6 +135,10 @@ pub(crate) fn times<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D
     within(u32::deserialize(deserializer)?, 1, 1_000_000)
 }
 
+pub(crate) fn flood_frames<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    within(u32::deserialize(deserializer)?, 1, 10_000)
+}
+
 /// A list whose elements are read one by one elsewhere; here only that it is there.
 pub(crate) fn read_later<'de, D: Deserializer<'de>, T>(
     deserializer: D,

@@ -58,6 +58,7 @@ fn read(text: String) -> Result<(), TestCaseError> {
                 let environment = Environment {
                     node: Some(node),
                     address: Some(node),
+                    ..Environment::default()
                 };
                 // Another node-ID may push an identifier out of its range.
                 prop_assert!(case.lower(&environment).is_ok() || node > 1);

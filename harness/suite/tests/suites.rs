@@ -11,6 +11,7 @@ use fieldproof_suite::{Diagnostic, Environment, Loaded, SourceFile, load};
 const NODE_1: Environment = Environment {
     node: Some(1),
     address: None,
+    identity: [None; 4],
 };
 
 fn load_text(text: &str) -> Loaded {
@@ -60,6 +61,7 @@ fn steps(text: &str) -> Vec<Step> {
     let environment = Environment {
         node: Some(0x0A),
         address: Some(0x20),
+        ..Environment::default()
     };
     let case = loaded.suites[0].cases().next().unwrap();
     let case = case.lower(&environment).unwrap();
@@ -273,6 +275,7 @@ fn what_depends_on_the_bench_is_found_when_the_case_is_asked_for() {
     let last = Environment {
         node: Some(127),
         address: None,
+        ..Environment::default()
     };
     assert!(case.lower(&last).is_ok());
     let none = case.lower(&Environment::default()).unwrap_err();

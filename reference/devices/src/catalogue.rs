@@ -76,7 +76,7 @@ pub struct Fault {
     /// What one sees, in the words of a bug report.
     pub words: &'static str,
     /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
-    /// `sync`, `time`, `store`, `emergency`, `cob-id`, `gateway`, `cia402`, `cia406`.
+    /// `sync`, `time`, `store`, `emergency`, `cob-id`, `robustness`, `gateway`, `cia402`, `cia406`.
     pub caught_by: &'static str,
     pub(crate) apply: fn(&mut Behaviour),
 }

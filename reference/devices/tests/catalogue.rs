@@ -9,7 +9,7 @@ use fieldproof_can::{Frame, StandardId};
 use fieldproof_devices::{DeviceKind, Settings, kind, kinds};
 use fieldproof_link::{Instant, Outbox, Participant, Reception, Stimulus, Transmission};
 
-const SUITES: [&str; 15] = [
+const SUITES: [&str; 16] = [
     "boot-up",
     "cia402",
     "cia406",
@@ -21,6 +21,7 @@ const SUITES: [&str; 15] = [
     "modbus",
     "nmt",
     "pdo",
+    "robustness",
     "sdo",
     "store",
     "sync",

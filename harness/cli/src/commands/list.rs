@@ -109,6 +109,7 @@ fn environment(library: &Library, suite: &Suite) -> Environment {
     Environment {
         node: node.or(Some(1)),
         address: address.or(Some(1)),
+        identity: description.map_or([None; 4], |it| it.identity.numbers()),
     }
 }
 

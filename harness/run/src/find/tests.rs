@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use fieldproof_dictionary::registers::RegisterMap;
+use std::collections::BTreeSet;
+
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_suite::device::DeviceDescription;
 use fieldproof_suite::{Columns, SourceFile, load, load_device, load_registers};
@@ -148,6 +150,7 @@ fn cases(head: &str, title: &str) -> Vec<String> {
     let known = Known {
         dictionary: Some(&dictionary()),
         registers: Some(&registers()),
+        bit_rates_kbit_per_s: Some(&BTreeSet::from([20, 100, 250, 1000])),
     };
     let suite = fill(&loaded.suites[0], &device(), known);
     let environment = fieldproof_suite::Environment::default();
@@ -407,5 +410,21 @@ fn functions_are_claimed_or_not() {
             "{f}"
         ),
         ["s/c[f=1] 1", "s/c[f=66] 66", "s/c[f=127] 127"]
+    );
+}
+
+#[test]
+fn bit_rates_are_those_of_the_eds_that_lss_can_name() {
+    assert_eq!(
+        cases("each: {r: {is: bit-rate}}", "{r}, {r-index}, {r-before}"),
+        [
+            "s/c[r=1000kbit_s] 1000 kbit/s, 0, 250 kbit/s",
+            "s/c[r=250kbit_s] 250 kbit/s, 3, 250 kbit/s",
+            "s/c[r=20kbit_s] 20 kbit/s, 7, 250 kbit/s",
+        ]
+    );
+    assert_eq!(
+        cases("each: {r: {is: other-bit-rate}}", "{r-index}"),
+        ["s/c[r=1000kbit_s] 0", "s/c[r=20kbit_s] 7"]
     );
 }

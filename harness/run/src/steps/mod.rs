@@ -2,6 +2,7 @@
 
 mod bench;
 mod drive;
+mod flood;
 mod frames;
 mod mapping;
 mod modbus;
@@ -45,6 +46,7 @@ impl Tester<'_> {
             Step::ExpectBytes(step) => self.expect_bytes(step),
             Step::Stimulate(step) => self.stimulate(step),
             Step::SetBitRate(bit_rate) => self.set_bit_rate(*bit_rate),
+            Step::Flood(flood) => self.flood(flood),
             Step::Repeat(repeat) => self.repeat(repeat),
         }
     }
@@ -85,6 +87,7 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
         Step::Modbus(step) => step.check.as_deref(),
         Step::ExpectBytes(step) => step.check.as_deref(),
         Step::Send(_)
+        | Step::Flood(_)
         | Step::Nmt(_)
         | Step::NmtEnter(_)
         | Step::DriveEnter(_)

@@ -49,6 +49,9 @@ pub(crate) struct BenchDeviceFile {
     #[serde(default, deserialize_with = "located_address")]
     #[schemars(range(min = 1, max = 247))]
     pub(crate) address: Option<Located<u8>>,
+    /// The serial number (1018h:04) of the unit that stands here, where each unit has its own.
+    #[serde(default)]
+    pub(crate) serial_number: Option<Located<u32>>,
     /// The stimuli there are; without this list, those that the links offer by themselves: `sim:` all, others none. On
     /// real links an operator is asked for them, unless there is a `stimulus-command`.
     #[serde(default)]

@@ -4,6 +4,7 @@ mod bench;
 mod can;
 mod case;
 mod device;
+mod flood;
 mod modbus;
 mod pdo;
 mod registers;
@@ -17,6 +18,7 @@ pub(crate) use bench::*;
 pub(crate) use can::*;
 pub(crate) use case::*;
 pub(crate) use device::*;
+pub(crate) use flood::*;
 pub(crate) use modbus::*;
 pub(crate) use pdo::*;
 pub(crate) use registers::*;
@@ -24,6 +26,7 @@ pub(crate) use sdo::*;
 pub(crate) use stimulate::*;
 
 crate::forms::schema_of!(
+    crate::model::Flood: FloodFile,
     crate::model::Sync: SyncFile,
     crate::model::Expect: ExpectFile,
     crate::model::ExpectTpdo: ExpectTpdoFile,

@@ -134,6 +134,7 @@ fn read_device(
         ports: device.ports.value,
         node: device.node,
         address: device.address,
+        serial_number: device.serial_number,
         stimuli: device.stimuli.map(|stimuli| stimuli.into_iter().collect()),
         stimulus_command: device.stimulus_command.map(|command| command.value),
         permits: device.permits.into_iter().collect(),

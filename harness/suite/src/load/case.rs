@@ -1,15 +1,16 @@
 //! One row of one case into a [`Case`].
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
 
 use super::{CaseRef, check};
 use crate::code;
-use crate::expand::{Environment, Scope, is_name};
+use crate::expand::{Environment, Scope, is_name, placeholders};
 use crate::file::{CaseFile, CiteFile};
 use crate::forms::{Either, OneOrMany};
+use crate::identity::Claim;
 use crate::model::{Case, Citation, Located, Restore, Source, Step};
 use crate::node::{Kind, Node};
 use crate::problem::{Problem, ReadError, with_nearest};
@@ -82,6 +83,7 @@ pub(super) fn read<'a>(
         because: file.because,
         examples: file.examples.0,
         needs: file.needs.0.into_iter().map(|need| need.0).collect(),
+        claims: claims(body, case.row),
         effects: file.effects.0,
         depth: file.depth,
         covers: covers(file.covers),
@@ -102,6 +104,27 @@ pub(super) fn read<'a>(
     match problems.is_empty() {
         true => Ok(lowered),
         false => Err(problems),
+    }
+}
+
+/// The numbers of the device's identity that stand in a case or in its row.
+fn claims(body: &Node, row: Option<&Node>) -> Vec<Claim> {
+    let mut names = BTreeSet::new();
+    gather_names(body, &mut names);
+    row.inspect(|row| gather_names(row, &mut names));
+    let mut claims = Claim::NUMBERS.to_vec();
+    claims.retain(|claim| names.contains(claim.name()));
+    claims
+}
+
+fn gather_names<'a>(node: &'a Node, names: &mut BTreeSet<&'a str>) {
+    match &node.kind {
+        Kind::Empty => {}
+        Kind::Text(text) => names.extend(placeholders(text).map(|it| it.name)),
+        Kind::List(elements) => elements.iter().for_each(|it| gather_names(it, names)),
+        Kind::Map(entries) => entries
+            .iter()
+            .for_each(|entry| gather_names(&entry.value, names)),
     }
 }
 

@@ -74,6 +74,7 @@ pub fn unknown_entries(suite: &Suite, catalogues: &[Catalogue]) -> Vec<Diagnosti
     let environment = Environment {
         node: Some(1),
         address: Some(1),
+        ..Environment::default()
     };
     let mut told = BTreeSet::new();
     let mut found = Vec::new();

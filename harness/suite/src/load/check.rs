@@ -122,6 +122,7 @@ fn can_fail(step: &Step) -> bool {
         | Step::ExpectDrive(_)
         | Step::Modbus(_) => true,
         Step::Send(_)
+        | Step::Flood(_)
         | Step::Nmt(_)
         | Step::NmtEnter(_)
         | Step::DriveEnter(_)

@@ -214,6 +214,12 @@ fn sample(query: &Query) -> Columns {
             ("-index", text("0x2000")),
             ("-sub", text("0")),
         ],
+        QueryKind::BitRate | QueryKind::OtherBitRate => vec![
+            ("", text("250 kbit/s")),
+            ("-index", text("3")),
+            ("-before", text("500 kbit/s")),
+            ("-before-index", text("2")),
+        ],
         QueryKind::Tpdo | QueryKind::Rpdo => vec![
             ("", text("1")),
             ("-communication", text("1800")),

@@ -43,6 +43,7 @@ impl<'a> RowCheck<'a> {
             environment: Environment {
                 node: (protocol != Protocol::Modbus).then_some(1),
                 address: (protocol != Protocol::Canopen).then_some(1),
+                ..Environment::default()
             },
             reads_left: MOST_READS,
         }

@@ -3,6 +3,7 @@
 
 mod canopen;
 mod drive;
+mod flood;
 mod frames;
 mod modbus;
 mod query;
@@ -13,6 +14,7 @@ mod suite;
 
 pub use canopen::*;
 pub use drive::*;
+pub use flood::*;
 pub use frames::*;
 pub use modbus::*;
 pub use query::*;

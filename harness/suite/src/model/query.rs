@@ -80,6 +80,10 @@ pub enum QueryKind {
     Tpdo,
     /// RPDOs.
     Rpdo,
+    /// Bit rates that the EDS claims and LSS can name.
+    BitRate,
+    /// Those of them that are not the present one.
+    OtherBitRate,
     /// Values of the register map: registers, coils, discrete inputs.
     Register,
     /// Addresses beside them that belong to none, in tables of which it is said that such are refused.
@@ -429,6 +433,8 @@ impl fmt::Display for Query {
                 Some(false) => "function that is known not to be there",
                 None => "function that is known to be there or not",
             },
+            QueryKind::BitRate => "bit rate in its EDS that LSS can name",
+            QueryKind::OtherBitRate => "second bit rate in its EDS that LSS can name",
         })?;
         let mut said: Vec<String> = Vec::new();
         let or = |words: Vec<String>| words.join(" or ");

@@ -5,8 +5,8 @@ use serde::Deserialize;
 
 use super::{
     DriveTarget, Expect, ExpectBootUp, ExpectBytes, ExpectDrive, ExpectHeartbeat, ExpectMapping,
-    ExpectSilence, ExpectState, ExpectTpdo, Located, Modbus, Nmt, NmtState, SdoRead, SdoWrite,
-    Send, SendBytes, SendRpdo, StartSync, Stimulate, Sync,
+    ExpectSilence, ExpectState, ExpectTpdo, Flood, Located, Modbus, Nmt, NmtState, SdoRead,
+    SdoWrite, Send, SendBytes, SendRpdo, StartSync, Stimulate, Sync,
 };
 use crate::forms::{either, either_schema};
 use crate::read_with::{bit_rate, read_later, times};
@@ -99,6 +99,8 @@ pub enum Step {
         #[schemars(with = "BitRate")]
         u32,
     ),
+    /// `flood: {frames: 200, ids: [101-17F]}`: many frames drawn by chance, the same for the same seed.
+    Flood(Flood),
     /// `repeat: {times: 128, steps: [...]}`: for what shows only the hundredth time.
     Repeat(Repeat),
 }

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Step;
+use crate::identity::Claim;
 use crate::read_with::{optional_address, optional_node};
 use crate::scalar::ObjectAddress;
 use crate::{Position, device};
@@ -78,6 +79,8 @@ pub struct Case {
     pub examples: Vec<String>,
     /// What the device or the bench must offer.
     pub needs: Vec<Need>,
+    /// The numbers of the device's identity that stand in it.
+    pub claims: Vec<Claim>,
     /// What it does to the device.
     pub effects: Vec<Effect>,
     /// How thorough a run must be to play it.

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::{
-    BlockTransfer, Departures, ErrorControlSettings, Manners, NmtSettings, ObjectFault,
-    OrdinaryTransfer, PdoBehaviour,
+    BlockTransfer, Departures, ErrorControlSettings, LssDepartures, Manners, NmtSettings,
+    ObjectFault, OrdinaryTransfer, PdoBehaviour, Robustness,
 };
 
 /// The settings of a CANopen slave's behaviour. The default conforms to CiA 301 and CiA 305.
@@ -39,6 +39,10 @@ pub struct Behaviour {
     pub sdo: OrdinaryTransfer,
     /// Abort codes, and what is said in their place.
     pub abort_codes: &'static [(u32, u32)],
+    /// LSS.
+    pub lss: LssDepartures,
+    /// What frames that mean nothing do to it.
+    pub robustness: Robustness,
     /// One value is not as the dictionary says.
     pub object_fault: Option<ObjectFault>,
 
@@ -226,6 +230,8 @@ impl Default for Behaviour {
             error_control: ErrorControlSettings::default(),
             sdo: OrdinaryTransfer::default(),
             abort_codes: &[],
+            lss: LssDepartures::default(),
+            robustness: Robustness::default(),
             object_fault: None,
             boot_up: true,
             heartbeat_can_be_stopped: true,

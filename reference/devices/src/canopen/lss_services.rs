@@ -4,14 +4,13 @@ use std::time::Duration;
 
 use fieldproof_link::Instant;
 
-use super::lss::{IDENTITY, LssState};
-use super::{Address, Slave};
+use super::Slave;
+use super::lss::{LssState, NO_NODE};
 
 /// The answer of a slave that is meant.
 const FOUND: u8 = 0x4F;
 /// The answer of a slave without node-ID that is meant.
 const FOUND_WITHOUT_NODE: u8 = 0x50;
-const NO_NODE: u8 = 255;
 /// `BitChecked` of the request that begins a fastscan.
 const SCAN_BEGINS: u8 = 128;
 
@@ -57,7 +56,9 @@ impl Slave {
             self.bit_rate = self.pending_bit_rate;
             switch.changed = true;
         }
-        self.queue.drop_due(now);
+        if !self.behaviour.lss.talks_while_switching {
+            self.queue.drop_due(now);
+        }
         if !switch.changed || switch.due() > now {
             self.switch = Some(switch);
         }
@@ -75,64 +76,78 @@ impl Slave {
     pub(super) fn find(&mut self, now: Instant, request: &[u8; 8]) {
         let [specifier, named @ .., bit, part, next] = *request;
         match specifier {
-            0x46..=0x4B => self.identify(now, specifier, u32::from_le_bytes(named)),
-            0x4C if self.pending_node == NO_NODE => self.answer(now, FOUND_WITHOUT_NODE),
+            0x46..=0x4B => self.identify(now, specifier - 0x46, u32::from_le_bytes(named)),
+            0x4C if self.says_it_has_no_node() => self.answer_lss(now, &[FOUND_WITHOUT_NODE]),
             0x51 => self.scan(now, u32::from_le_bytes(named), [bit, part, next]),
             _ => {}
         }
     }
 
-    fn own(&self, part: u8) -> u32 {
-        let address = Address::new(IDENTITY, part.saturating_add(1));
-        self.objects.number(address).unwrap_or(0)
-    }
-
-    fn answer(&mut self, now: Instant, specifier: u8) {
-        self.answer_lss(now, [specifier, 0, 0, 0, 0, 0, 0, 0]);
+    fn says_it_has_no_node(&self) -> bool {
+        let departs = &self.behaviour.lss;
+        match self.pending_node == NO_NODE {
+            true => !departs.unconfigured_silent,
+            false => departs.unconfigured_with_node,
+        }
     }
 
     /// Six numbers, one after the other, between which the identity must be.
-    fn identify(&mut self, now: Instant, specifier: u8, named: u32) {
-        let step = specifier - 0x46;
+    fn identify(&mut self, now: Instant, step: u8, named: u32) {
+        let departs = &self.behaviour.lss;
+        let (revision, serial) = (self.own(2), self.own(3));
+        let strictly = departs.identify_bounds_exclusive;
+        let within = |low: u32, high: u32| low < high || (low == high && !strictly);
         let fits = match step {
             0 => self.own(0) == named,
             1 => self.own(1) == named,
-            2 => self.own(2) >= named,
-            3 => self.own(2) <= named,
-            4 => self.own(3) >= named || !self.behaviour.lss_identify_compares,
-            _ => self.own(3) <= named || !self.behaviour.lss_identify_compares,
+            2 => within(named, revision),
+            3 => within(revision, named),
+            4 => within(named, serial) || !self.behaviour.lss_identify_compares,
+            _ => within(serial, named) || !self.behaviour.lss_identify_compares,
         };
-        let expected = step == 0 || self.identified == step;
-        self.identified = if fits && expected { step + 1 } else { 0 };
-        if self.identified == 6 {
-            self.identified = 0;
-            self.answer(now, FOUND);
+        let fits = fits || departs.identify_step_ignored == Some(step);
+        let work = &mut self.lss_work;
+        let expected = step == 0 || work.identified == step || departs.identify_begins_anywhere;
+        work.identified = if fits && expected { step + 1 } else { 0 };
+        if work.identified == 6 {
+            work.identified = 0;
+            self.answer_lss(now, &[FOUND]);
         }
     }
 
     /// Bit by bit, from the highest, through the four numbers of the identity.
     fn scan(&mut self, now: Instant, named: u32, [bit, part, next]: [u8; 3]) {
+        let departs = self.behaviour.lss.clone();
         let unconfigured = self.pending_node == NO_NODE && !self.has_node();
         let asked = unconfigured || !self.behaviour.lss_fastscan_unconfigured_only;
-        if !asked || self.lss == LssState::Configuration {
+        let selected = self.lss == LssState::Configuration && !departs.scan_in_configuration;
+        if !asked || selected {
             return;
         }
         if bit == SCAN_BEGINS {
-            self.scanned = 0;
-            return self.answer(now, FOUND);
+            if !departs.scan_goes_on {
+                self.lss_work.scanned = 0;
+            }
+            return self.answer_lss(now, &[FOUND]);
         }
-        if bit > 31 || part > 3 || next > 3 || part != self.scanned {
+        let in_turn = part == self.lss_work.scanned || departs.scan_part_ignored;
+        if bit > 31 || part > 3 || next > 3 || !in_turn {
             return;
         }
-        if (self.own(part) ^ named) >> bit != 0 {
+        let lowest = if departs.scan_low_bits_compared {
+            0
+        } else {
+            bit
+        };
+        if (self.own(part) ^ named) >> lowest != 0 && !departs.scan_number_ignored {
             return;
         }
         if bit == 0 {
-            self.scanned = next;
-            if next < part {
+            self.lss_work.scanned = next;
+            if next < part && !departs.scan_does_not_select {
                 self.lss = LssState::Configuration;
             }
         }
-        self.answer(now, FOUND);
+        self.answer_lss(now, &[FOUND]);
     }
 }

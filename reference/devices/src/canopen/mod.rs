@@ -16,6 +16,8 @@ pub(crate) mod error_control_faults;
 mod error_control_settings;
 pub(crate) mod faults;
 mod lss;
+mod lss_departures;
+pub(crate) mod lss_faults;
 mod lss_services;
 mod memory;
 mod nmt;
@@ -29,6 +31,8 @@ pub(crate) mod pdo_faults;
 mod pdo_rules;
 mod profile;
 mod queue;
+mod robustness;
+pub(crate) mod robustness_faults;
 mod sdo;
 pub(crate) mod sdo_faults;
 pub(crate) mod service_faults;
@@ -47,12 +51,14 @@ pub use behaviour::{AbortMultiplexer, Behaviour, NmtAddress, NodeActivation, Sta
 pub use departures::{Departures, Manners};
 pub(crate) use emergency::{DeviceError, HARDWARE};
 pub use error_control_settings::ErrorControlSettings;
+pub use lss_departures::LssDepartures;
 use nmt::State;
 pub use nmt_settings::NmtSettings;
 pub use object_fault::{ObjectFault, ObjectFaultKind};
 pub(crate) use objects::Objects;
 pub use pdo_behaviour::PdoBehaviour;
 pub(crate) use profile::{Answer, Application, LssAbilities, Profile, TransmitEvent};
+pub use robustness::Robustness;
 pub use sdo::{
     BlockTransfer, ClientAbort, OrdinaryTransfer, ReadOnly, Recovery, SecondInitiate, ShortRequest,
     StraySegment,

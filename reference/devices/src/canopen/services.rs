@@ -5,6 +5,7 @@ use fieldproof_link::Instant;
 
 use super::consumers::Consumers;
 use super::emergency::Errors;
+use super::lss::LssWork;
 use super::queue::identifier;
 use super::sdo::Server;
 use super::time::Clock;
@@ -33,8 +34,7 @@ impl Slave {
         self.set_clock(now);
         self.consequence = None;
         self.switch = None;
-        self.identified = 0;
-        self.scanned = 0;
+        self.lss_work = LssWork::default();
         self.servers.clear();
         if self.profile.consumes_heartbeats {
             self.consumers = Consumers::read(&self.objects, &self.behaviour, now);

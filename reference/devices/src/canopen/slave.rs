@@ -10,13 +10,14 @@ use fieldproof_link::{Instant, Line, NotOffered, Outbox};
 use super::consumers::Consumers;
 use super::emergency::Errors;
 use super::error_control::ErrorControl;
-use super::lss::{self, BitTimingSwitch, LssState};
+use super::lss::{self, BitTimingSwitch, LssState, LssWork, NO_NODE};
 use super::memory::Memory;
 use super::nmt::Command;
 use super::objects::Objects;
 use super::pdo::{self, Rpdo};
 use super::pdo_rules::Parameter;
 use super::queue::{Queue, Service, identifier};
+use super::robustness::Strain;
 use super::sdo::Server;
 use super::services::AdditionalServer;
 use super::sync::Sync;
@@ -24,10 +25,8 @@ use super::time::Clock;
 use super::tpdo::{self, Tpdo};
 use super::{Address, Application, Behaviour, Profile, State};
 
-const ALL: RangeInclusive<u16> = 0x0000..=0xFFFF;
+pub(super) const ALL: RangeInclusive<u16> = 0x0000..=0xFFFF;
 const IDENTITY: u16 = 0x1018;
-/// The node-ID of a slave that has none yet.
-const NO_NODE: u8 = 255;
 
 /// A CANopen slave on one CAN port.
 #[derive(Debug)]
@@ -52,10 +51,9 @@ pub(crate) struct Slave {
     pub(super) consequence: Option<State>,
     /// A bit timing is being activated.
     pub(super) switch: Option<BitTimingSwitch>,
-    /// So many numbers by which slaves are to identify themselves have fitted in a row.
-    pub(super) identified: u8,
-    /// The part of the identity that a fastscan asks for.
-    pub(super) scanned: u8,
+    pub(super) lss_work: LssWork,
+    /// What the traffic has done to it.
+    pub(super) strain: Strain,
     /// The SDO servers beside the default one.
     pub(super) servers: Vec<AdditionalServer>,
     pub(super) rpdos: Vec<Rpdo>,
@@ -106,8 +104,8 @@ impl Slave {
             clock: Clock::default(),
             consequence: None,
             switch: None,
-            identified: 0,
-            scanned: 0,
+            lss_work: LssWork::default(),
+            strain: Strain::default(),
             servers: Vec::new(),
             rpdos: Vec::new(),
             tpdos: Vec::new(),
@@ -144,18 +142,25 @@ impl Slave {
         if !self.powered || self.boot_at.is_some() {
             return;
         }
-        let (raw, node) = match frame.id() {
-            Id::Standard(id) => (id.raw(), u16::from(self.node)),
+        let mut frame = *frame;
+        match frame.id() {
             Id::Extended(id) if id.raw() == 0 && self.behaviour.nmt.extended_identifier_taken => {
-                (0, u16::from(self.node))
+                frame = frame.with_id(identifier(0));
             }
             Id::Extended(id) if !self.behaviour.pdo.extended_frames_passed_over => {
                 let [low, high, ..] = (id.raw() & 0x7FF).to_le_bytes();
                 let identifier = u16::from_le_bytes([low, high]);
-                return self.receive_pdo(now, identifier, frame, application);
+                return self.receive_pdo(now, identifier, &frame, application);
             }
-            Id::Extended(_) => return,
+            _ => {}
+        }
+        let Some(frame) = &self.bear(now, &frame, application) else {
+            return;
         };
+        let Some(id) = frame.standard_id() else {
+            return;
+        };
+        let (raw, node) = (id.raw(), u16::from(self.node));
         if raw == lss::REQUEST {
             self.receive_lss(now, frame);
         } else if self.state == State::Initialising {
@@ -266,6 +271,7 @@ impl Slave {
     /// Power goes on or off.
     pub(crate) fn power(&mut self, now: Instant, on: bool, application: &mut dyn Application) {
         self.powered = on;
+        self.strain = Strain::default();
         self.queue.clear();
         if on {
             self.error_control = ErrorControl::default();
@@ -324,7 +330,7 @@ impl Slave {
     }
 
     /// Everything as after power-on: what is in non-volatile memory, else the defaults.
-    fn reset_node(
+    pub(super) fn reset_node(
         &mut self,
         now: Instant,
         restored: RangeInclusive<u16>,
@@ -341,7 +347,9 @@ impl Slave {
 
     /// The communication part of it, with the node-ID that was configured.
     pub(super) fn reset_communication(&mut self, now: Instant) {
-        self.node = self.pending_node;
+        if !self.behaviour.lss.node_waits_for_reset_node {
+            self.node = self.pending_node;
+        }
         let kept = self.kept_pdo_parameters();
         let restored = self.behaviour.nmt.restored_by_reset_communication.clone();
         self.objects.load(restored, self.node, &self.memory.values);
@@ -396,7 +404,9 @@ impl Slave {
             }
         }
         self.state = State::Initialising;
-        self.lss = LssState::Waiting;
+        if !self.behaviour.lss.configuration_survives_reset {
+            self.lss = LssState::Waiting;
+        }
         self.queue.clear();
         self.sdo.reset(&self.behaviour.sdo);
         self.sync = Sync::default();

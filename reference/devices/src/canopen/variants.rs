@@ -147,3 +147,9 @@ pub(crate) const GUARDED_BY_ONE_BYTE: Variant = Variant {
     words: "ignores a guarding request whose length is not 1: the remote frame has the length of what it asks for",
     apply: |behaviour| behaviour.canopen.error_control.guarding_answers_any_length = false,
 };
+
+pub(crate) const LSS_ADDRESS_COMPARED_AT_THE_END: Variant = Variant {
+    name: "lss-address-compared-at-the-end",
+    words: "compares an LSS address when its fourth number has come, not number by number",
+    apply: |behaviour| behaviour.canopen.lss.compares_at_the_end = true,
+};

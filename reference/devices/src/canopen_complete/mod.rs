@@ -11,8 +11,8 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, communication_faults, error_control_faults, faults, nmt_faults, pdo_faults,
-    sdo_faults, service_faults,
+    block_faults, communication_faults, error_control_faults, faults, lss_faults, nmt_faults,
+    pdo_faults, robustness_faults, sdo_faults, service_faults,
 };
 use crate::catalogue::{
     Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
@@ -46,6 +46,7 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_IDENTITY_BYTE_ORDER,
     faults::LSS_SERIAL_IGNORED,
     faults::LSS_BIT_TIMING_MISSING,
+    faults::NODE_ID_ACTIVE_BEFORE_RESET,
 ];
 static FAULTS: [Fault;
     faults::COMMON.len()
@@ -62,6 +63,9 @@ static FAULTS: [Fault;
         + sdo_faults::SERVERS.len()
         + sdo_faults::REASONS.len()
         + block_faults::BLOCK.len()
+        + lss_faults::EVERY.len()
+        + lss_faults::COMPLETE.len()
+        + robustness_faults::ALL.len()
         + pdo_faults::ALL.len()] = all_of(&[
     faults::COMMON,
     nmt_faults::COMMON,
@@ -78,6 +82,9 @@ static FAULTS: [Fault;
     sdo_faults::REASONS,
     block_faults::BLOCK,
     pdo_faults::ALL,
+    lss_faults::EVERY,
+    lss_faults::COMPLETE,
+    robustness_faults::ALL,
 ]);
 
 /// What can be built.
@@ -107,6 +114,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         canopen::variants::EMERGENCY_LATE,
         canopen::variants::PASSING_ERRORS_SHOWN,
         canopen::variants::LONG_PDO_UNREPORTED,
+        canopen::variants::LSS_ADDRESS_COMPARED_AT_THE_END,
     ],
     build,
 };
@@ -231,7 +239,11 @@ impl Participant for Complete {
 #[cfg(test)]
 mod communication_tests;
 #[cfg(test)]
+mod disturbed_tests;
+#[cfg(test)]
 mod error_control_tests;
+#[cfg(test)]
+mod lss_tests;
 #[cfg(test)]
 mod nmt_tests;
 #[cfg(test)]

@@ -17,7 +17,7 @@ use fieldproof_link::{
 
 use crate::canopen::{
     self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, error_control_faults,
-    faults, nmt_faults,
+    faults, lss_faults, nmt_faults,
 };
 use crate::catalogue::{
     DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
@@ -69,12 +69,14 @@ static FAULTS: [Fault;
         + error_control_faults::COMMON.len()
         + modbus::faults::COMMON.len()
         + OWN_FAULTS.len()
+        + lss_faults::EVERY.len()
         + ENCODER_FAULTS.len()] = all_of(&[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     modbus::faults::COMMON,
     OWN_FAULTS,
+    lss_faults::EVERY,
     ENCODER_FAULTS,
 ]);
 
