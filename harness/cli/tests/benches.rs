@@ -331,7 +331,7 @@ fn documented_examples_are_what_they_say() {
         .skip(1)
         .map(|block| block.split("```").next().unwrap())
         .collect();
-    assert_eq!(blocks.len(), 3, "a device and two benches");
+    assert_eq!(blocks.len(), 4, "a device, a register map and two benches");
     let folder = Folder::new();
     unknown_drive(&folder);
     folder.write("my-drive/device.yaml", blocks[0]);
@@ -339,8 +339,8 @@ fn documented_examples_are_what_they_say() {
         "my-drive/my-drive.eds",
         folder.read("drive/kinco-servo.eds"),
     );
-    folder.write("my-drive/lab.yaml", blocks[1]);
-    folder.write("my-drive/rack.yaml", blocks[2]);
+    folder.write("my-drive/lab.yaml", blocks[2]);
+    folder.write("my-drive/rack.yaml", blocks[3]);
     let checked = folder.run(&["check", "my-drive"]);
     assert!(
         checked.out().contains("2 benches: no mistakes"),

@@ -150,7 +150,7 @@ fn cases(head: &str, title: &str) -> Vec<String> {
     let known = Known {
         dictionary: Some(&dictionary()),
         registers: Some(&registers()),
-        bit_rates_kbit_per_s: Some(&BTreeSet::from([20, 100, 250, 1000])),
+        bit_rates_kbit_per_s: Some(&BTreeSet::from([20, 100, 125, 1000])),
     };
     let suite = fill(&loaded.suites[0], &device(), known);
     let environment = fieldproof_suite::Environment::default();
@@ -418,9 +418,9 @@ fn bit_rates_are_those_of_the_eds_that_lss_can_name() {
     assert_eq!(
         cases("each: {r: {is: bit-rate}}", "{r}, {r-index}, {r-before}"),
         [
-            "s/c[r=1000kbit_s] 1000 kbit/s, 0, 250 kbit/s",
-            "s/c[r=250kbit_s] 250 kbit/s, 3, 250 kbit/s",
-            "s/c[r=20kbit_s] 20 kbit/s, 7, 250 kbit/s",
+            "s/c[r=1000kbit_s] 1000 kbit/s, 0, 125 kbit/s",
+            "s/c[r=125kbit_s] 125 kbit/s, 4, 125 kbit/s",
+            "s/c[r=20kbit_s] 20 kbit/s, 7, 125 kbit/s",
         ]
     );
     assert_eq!(

@@ -11,10 +11,10 @@ use fieldproof_link::real::serve::serve;
 use fieldproof_link::real::{NoStimuli, RealLane, Tcp, TcpServer};
 use fieldproof_link::{Connected, Framing};
 use fieldproof_record::{CaseFinished, Event};
-use fieldproof_run::{Bench, LaneJob, LaneOutcome, play_lane};
+use fieldproof_run::{Bench, Known, LaneJob, LaneOutcome, fill, play_lane};
 use fieldproof_suite::device::DeviceDescription;
 use fieldproof_suite::model::{Depth, Effect};
-use fieldproof_suite::{SourceFile, Suite, load, load_device};
+use fieldproof_suite::{SourceFile, Suite, load, load_device, load_registers};
 
 /// What a run gave.
 pub(crate) struct Played {
@@ -58,7 +58,15 @@ pub(crate) fn modbus_suites(device: &str) -> Vec<Suite> {
     ];
     let loaded = load(&files);
     assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
-    loaded.suites
+    let path = format!("fixtures/devices/{device}/registers.yaml");
+    let registers = load_registers(&source(&path)).unwrap();
+    let known = Known {
+        registers: Some(&registers),
+        ..Known::default()
+    };
+    let device = description(device);
+    let filled = |suite| fill(suite, &device, known);
+    loaded.suites.iter().map(filled).collect()
 }
 
 /// The cases of a suite in words.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fieldproof_dictionary::{Access, Dictionary};
+use fieldproof_dictionary::{Access, Dictionary, Entry};
 
 use super::Address;
 use super::emergency::ERROR_HISTORY;
@@ -129,11 +129,47 @@ impl ObjectFault {
             }
             ObjectFaultKind::WrongSize => entry.data_type.bytes().is_some() && access.readable(),
             ObjectFaultKind::Writable => !access.writable(),
-            ObjectFaultKind::ReadOnly => access.writable(),
+            ObjectFaultKind::ReadOnly => access.writable() && self.is_plain(),
             ObjectFaultKind::Readable => !access.readable(),
-            ObjectFaultKind::TooHigh => entry.high_limit.is_some() && access.writable(),
-            ObjectFaultKind::TooLow => entry.low_limit.is_some() && access.writable(),
+            ObjectFaultKind::TooHigh => {
+                let bounded = entry
+                    .high_limit
+                    .is_some_and(|high| high.value(1) < highest(entry));
+                bounded && access.writable() && self.is_plain()
+            }
+            ObjectFaultKind::TooLow => {
+                let bounded = entry
+                    .low_limit
+                    .is_some_and(|low| low.value(1) > lowest(entry));
+                bounded && access.writable() && self.is_plain()
+            }
         }
+    }
+
+    /// Whether nothing but its type and limits says what may be written.
+    const fn is_plain(self) -> bool {
+        !matches!(
+            self.address.index(),
+            0x1003 | 0x1010 | 0x1011 | 0x1020 | 0x1200..=0x1BFF
+        )
+    }
+}
+
+/// The highest value that the type can hold.
+fn highest(entry: &Entry) -> i128 {
+    let bits = entry.data_type.bits().unwrap_or(0);
+    match entry.data_type.is_signed() {
+        true => (1 << bits.saturating_sub(1)) - 1,
+        false => (1 << bits) - 1,
+    }
+}
+
+/// The lowest value that the type can hold.
+fn lowest(entry: &Entry) -> i128 {
+    let bits = entry.data_type.bits().unwrap_or(0);
+    match entry.data_type.is_signed() {
+        true => -(1 << bits.saturating_sub(1)),
+        false => 0,
     }
 }
 

@@ -43,7 +43,6 @@ const SERIAL: usize = 1;
 
 /// The faults of this device alone.
 const OWN_FAULTS: &[Fault] = &[
-    error_control_faults::GUARDING_TOGGLE_NOT_RESTARTED,
     faults::TOGGLE_NOT_ALTERNATED,
     faults::SDO_ANSWERED_IN_STOPPED,
     faults::GUARDING_TOGGLE_STUCK,
