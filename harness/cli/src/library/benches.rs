@@ -226,7 +226,7 @@ impl Reader {
     fn set_addresses(&mut self, on_bench: &BenchDevice, device: &mut Device, shown: &Shown<'_>) {
         let description = &mut device.description;
         if on_bench.serial_number.is_some() {
-            description.identity.serial_number = on_bench.serial_number.clone();
+            description.identity.serial_number = on_bench.serial_number;
         }
         if let Some(node) = &on_bench.node {
             match &mut description.canopen {
