@@ -143,7 +143,7 @@ fn server_behind_a_port_is_found_and_put_on_a_bench() {
     let rows: Vec<&str> = out.lines().skip(1).take(2).collect();
     let expected = [
         "address  device  identification  answer",
-        "32       -       -               register 0000h: 0FB4h",
+        "30       -       -               register 0000h: 0FB4h",
     ];
     assert_eq!(rows, expected);
 
