@@ -290,7 +290,7 @@ fn device_without_a_reference_device_is_checked_and_not_simulated() {
     let ran = folder.run(&["check", "drive"]);
     assert_eq!(ran.exit(), Some(0), "{}", ran.error());
     assert!(
-        ran.out().contains("6 devices: no mistakes"),
+        ran.out().contains("8 devices: no mistakes"),
         "{}",
         ran.out()
     );
