@@ -146,11 +146,11 @@ impl ObjectFault {
         }
     }
 
-    /// Whether nothing but its type and limits says what may be written.
+    /// Whether nothing but its type and limits says what may be written: no service has rules of its own for it.
     const fn is_plain(self) -> bool {
         !matches!(
             self.address.index(),
-            0x1003 | 0x1010 | 0x1011 | 0x1020 | 0x1200..=0x1BFF
+            0x1003 | 0x1010 | 0x1011 | 0x1019 | 0x1020 | 0x1200..=0x1BFF | 0x2025 | 0x3000 | 0x3001
         )
     }
 }
