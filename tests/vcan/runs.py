@@ -12,7 +12,7 @@ import unittest
 
 from bench import FIELDPROOF, Device, bench_file, running
 
-RUN_SECONDS = 400
+RUN_SECONDS = 900
 
 
 class Run:

@@ -70,7 +70,10 @@ class OnVcan(FoldersAndRuns):
 
     def test_devices_written_in_python(self) -> None:
         devices = {name: written_in_python(name) for name in KINDS}
-        self.passes(devices, {"kinco": 90, "huacheng": 70, "encoder": 95, "teco": 120}, "--no-operator")
+        # They have what the manuals show of SDO, PDO, NMT and LSS, and not every service that the standard has.
+        suites = ["kinco-servo.nmt", "kinco-servo.sdo", "kinco-servo.pdo", "liaomiao-encoder.lss"]
+        suites += ["huacheng-ssts1.pdo", "teco-jn5-cm-can.nmt", "teco-jn5-cm-can.sdo", "teco-jn5-cm-can.pdo"]
+        self.passes(devices, {"kinco": 20, "huacheng": 5, "encoder": 5, "teco": 20}, *suites, "--no-operator")
 
     def test_a_master_written_in_python_on_our_devices(self) -> None:
         script = str(ROOT / "reference/python/masters/canopen_master.py")
