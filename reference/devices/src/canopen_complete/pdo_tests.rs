@@ -1,8 +1,7 @@
 //! PDOs frame by frame: what the slave does, and what it does with a fault.
 
 use super::KIND;
-use crate::Settings;
-use crate::script::{Script, conforms, departs};
+use crate::script::{conforms, departs};
 
 /// RPDO1 is mapped to 2006h alone (16 bits); its type is written where `TYPE` stands.
 const MAP_RPDO1: &str = "
