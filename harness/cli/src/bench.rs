@@ -151,7 +151,9 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
                 stop_bits,
                 ..
             }) => builder.serial_line(port.role, serial(*baud, *parity, *stop_bits)),
+            Some(PortDescription::Tcp { .. }) => builder.connection(port.role, Framing::ModbusTcp),
             None => match port.medium {
+                Medium::Tcp => builder.connection(port.role, Framing::ModbusTcp),
                 Medium::Can { bit_rate } => builder.can_bus(port.role, bit_rate),
                 Medium::Serial(settings) => builder.serial_line(port.role, settings),
             },
@@ -248,8 +250,13 @@ fn bench_of(
     let over_tcp = links.filter(|(_, link)| {
         link.kind == LinkKind::Tcp && link.parameters.framing != Some(bench::Framing::Rtu)
     });
+    let over_tcp = over_tcp.map(|(role, _)| role);
+    let described = description.ports.iter();
+    let described = described.filter(|(_, port)| matches!(port, PortDescription::Tcp { .. }));
+    let described = described.map(|(role, _)| role);
+    let described = described.filter(|role| ports.contains(*role));
     Bench {
-        modbus_tcp: over_tcp.map(|(role, _)| role.clone()).collect(),
+        modbus_tcp: over_tcp.chain(described).cloned().collect(),
         ports,
         fixed_rates: BTreeSet::new(),
         stimuli,

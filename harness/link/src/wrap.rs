@@ -5,9 +5,9 @@ use std::num::NonZeroU32;
 use std::time::Duration;
 
 use crate::{
-    Arrival, Character, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Origin, Parity,
-    Participant, PortIndex, PortProperties, Reception, Sent, Stimulus, StimulusError, StimulusKind,
-    Transmission,
+    Arrival, Character, CompanionIndex, Farewell, Instant, Lane, Line, LinkError, NotOffered,
+    Origin, Parity, Participant, PortIndex, PortProperties, Reception, Sent, Stimulus,
+    StimulusError, StimulusKind, Transmission,
 };
 
 /// What a bad line does to what the tester hears.
@@ -146,6 +146,14 @@ impl<L: Lane> Lane for FaultyLine<L> {
 
     fn detach(&mut self, companion: CompanionIndex) {
         self.lane.detach(companion);
+    }
+
+    fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
+        self.lane.connect(port, name)
+    }
+
+    fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
+        self.lane.disconnect(port, how)
     }
 
     fn device_state(&self) -> BTreeMap<String, String> {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use fieldproof_dictionary::Dictionary;
 use fieldproof_link::StimulusKind;
-use fieldproof_suite::device::{DeviceDescription, Feature, FunctionCode, PortDescription};
+use fieldproof_suite::device::{DeviceDescription, Feature, FunctionCode, Parity, PortDescription};
 use fieldproof_suite::identity::Claim;
 use fieldproof_suite::model::{
     Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
@@ -13,7 +13,7 @@ use fieldproof_suite::model::{
 use fieldproof_suite::scalar::ObjectAddress;
 
 use crate::selected::missing_object;
-use crate::tester::{SERIAL, multiplexer};
+use crate::tester::{SERIAL, TCP, multiplexer};
 
 /// What the bench has and permits.
 #[derive(Debug, Clone)]
@@ -48,6 +48,7 @@ pub fn skip_reason(
         .or_else(|| too_deep(case, bench))
         .or_else(|| missing_need(case, device, dictionary, bench))
         .or_else(|| rtu_alone(case, bench))
+        .or_else(|| no_parity(case, device, bench))
         .or_else(|| missing_claim(case, device))
         .or_else(|| missing_objects(case, dictionary))
         .or_else(|| missing_permission(case, device, bench))
@@ -59,6 +60,7 @@ pub fn skip_reason(
 fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
     let roles: &[&str] = match protocol {
         Protocol::Canopen => &["can"],
+        Protocol::Modbus if bench.ports.contains(TCP) => &[],
         Protocol::Modbus => &["serial"],
         Protocol::Gateway => &["can", "inverter"],
     };
@@ -150,40 +152,64 @@ fn missing_companion(case: &Case, device: &DeviceDescription) -> Option<String> 
     })
 }
 
+/// Whether Modbus is spoken over TCP where a step names no port.
+fn is_over_tcp(bench: &Bench) -> bool {
+    match bench.ports.contains(SERIAL) {
+        true => bench.modbus_tcp.contains(SERIAL),
+        false => bench.modbus_tcp.contains(TCP),
+    }
+}
+
 /// A device that has Modbus TCP and no serial line answers there what it would answer on one.
 fn is_claimed(feature: Feature, device: &DeviceDescription, bench: &Bench) -> bool {
-    let over_tcp = feature == Feature::ModbusRtu && bench.modbus_tcp.contains(SERIAL);
+    let over_tcp = feature == Feature::ModbusRtu && is_over_tcp(bench);
     device.features.contains(&feature)
         || (over_tcp && device.features.contains(&Feature::ModbusTcp))
 }
 
 /// What makes sense on a serial line alone is not played on Modbus TCP.
 fn rtu_alone(case: &Case, bench: &Bench) -> Option<String> {
-    if bench.modbus_tcp.is_empty() {
-        return None;
-    }
     let steps = case.control.iter().chain(&case.steps);
     steps
         .chain(&case.restore.steps)
         .find_map(|step| rtu_step(&step.value, bench))
 }
 
+/// A parity bit is sent wrong where there is none.
+fn no_parity(case: &Case, device: &DeviceDescription, bench: &Bench) -> Option<String> {
+    let spoils = |step: &Located<Step>| {
+        matches!(
+            &step.value,
+            Step::SendBytes(SendBytes { spoil: Some(_), .. })
+        )
+    };
+    let has_parity = matches!(
+        device.ports.get(SERIAL),
+        Some(PortDescription::Serial { parity, .. }) if *parity != Parity::None
+    );
+    let carries = has_parity && !bench.fixed_rates.contains(SERIAL);
+    let mut steps = case.control.iter().chain(&case.steps);
+    (steps.any(spoils) && !carries).then(|| "the line has no parity bit".to_owned())
+}
+
 fn rtu_step(step: &Step, bench: &Bench) -> Option<String> {
-    let is_tcp =
-        |port: &Option<String>| bench.modbus_tcp.contains(port.as_deref().unwrap_or(SERIAL));
+    // A port that the bench does not have is a connection that the case has opened.
+    let is_tcp = |port: &Option<String>| match port.as_deref() {
+        Some(port) => bench.modbus_tcp.contains(port),
+        None => is_over_tcp(bench),
+    };
     match step {
+        Step::Connect(_) if bench.modbus_tcp.is_empty() => Some("no port of Modbus TCP".to_owned()),
         Step::SendBytes(SendBytes { port, .. }) | Step::ExpectBytes(ExpectBytes { port, .. })
             if is_tcp(port) =>
         {
             Some("written as an RTU frame; this link is Modbus TCP".to_owned())
         }
-        Step::Modbus(Modbus { to: Some(to), .. })
-            if is_tcp(&None) && bench.address != Some(*to) =>
-        {
-            Some(format!(
-                "sent to address {to}; this link is Modbus TCP, with one device at its end"
-            ))
-        }
+        Step::Modbus(Modbus {
+            to: Some(to), port, ..
+        }) if port.is_none() && is_over_tcp(bench) && bench.address != Some(*to) => Some(format!(
+            "sent to address {to}; this link is Modbus TCP, with one device at its end"
+        )),
         Step::Repeat(repeat) => {
             let mut steps = repeat.steps.iter();
             steps.find_map(|step| rtu_step(&step.value, bench))

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use fieldproof_can::Frame;
 use fieldproof_link::{
-    Arrival, Character, Instant, Lane, Line, Origin, PortIndex, Reception, Sent, SerialSettings,
-    Transmission,
+    Arrival, Character, Farewell, Framing, Instant, Lane, Line, Origin, PortIndex, Reception, Sent,
+    SerialSettings, Transmission,
 };
 use fieldproof_record::{BusErrorEvent, Direction, Event, FrameEvent, SerialEvent, Sink};
 
@@ -74,6 +74,10 @@ pub(crate) struct Session<'a> {
     last_activity: Vec<Instant>,
     /// The last transaction identifier of Modbus TCP.
     transaction: u16,
+    /// Connections that the case has opened, and the port that each leads to.
+    connections: Vec<(PortIndex, PortIndex)>,
+    /// How many ports there were from the beginning; those behind them are connections that were opened.
+    lasting: usize,
 }
 
 impl<'a> Session<'a> {
@@ -88,7 +92,8 @@ impl<'a> Session<'a> {
             .iter()
             .map(|port| Assembler::new(port.line, port.has_bit_times()))
             .collect();
-        let last_activity = vec![now; assemblers.len()];
+        let lasting = assemblers.len();
+        let last_activity = vec![now; lasting];
         Session {
             lane,
             sink,
@@ -105,7 +110,62 @@ impl<'a> Session<'a> {
             last_is_leaving: false,
             last_activity,
             transaction: 0,
+            connections: Vec::new(),
+            lasting,
         }
+    }
+
+    /// The first port that is Modbus TCP.
+    pub(crate) fn tcp_port(&self) -> Option<PortIndex> {
+        let mut ports = self.lane.ports().iter();
+        ports
+            .position(|port| port.line == Line::Stream(Framing::ModbusTcp))
+            .map(PortIndex)
+    }
+
+    /// Opens a further connection to where `port` leads.
+    pub(crate) fn connect(&mut self, port: PortIndex, name: &str) -> Result<(), Stop> {
+        let connection = self.lane.connect(port, name)?;
+        let now = self.lane.now();
+        let place = connection.0;
+        let properties = self.lane.ports().get(place);
+        let assembler = properties.and_then(|it| Assembler::new(it.line, it.has_bit_times()));
+        if place >= self.assemblers.len() {
+            self.assemblers.resize_with(place + 1, || None);
+            self.last_activity.resize(place + 1, now);
+        }
+        self.assemblers[place] = assembler;
+        self.connections.push((connection, port));
+        self.mark_sent();
+        Ok(())
+    }
+
+    /// Ends a connection that the case has opened.
+    pub(crate) fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), Stop> {
+        self.lane.disconnect(port, how)?;
+        self.connections
+            .retain(|(connection, _)| *connection != port);
+        self.inbox.retain(|received| received.port != port);
+        Ok(())
+    }
+
+    /// Ends all of them.
+    pub(crate) fn disconnect_all(&mut self) -> Result<(), Stop> {
+        while let Some((connection, _)) = self.connections.last().copied() {
+            self.disconnect(connection, Farewell::Close)?;
+        }
+        Ok(())
+    }
+
+    /// Whether `port` is a connection that the case has opened.
+    pub(crate) fn is_connection(&self, port: PortIndex) -> bool {
+        self.connections.iter().any(|(it, _)| *it == port)
+    }
+
+    /// What stands in the record: of a connection, the port that it leads to.
+    fn recorded_port(&self, port: PortIndex) -> u8 {
+        let led = self.connections.iter().find(|(it, _)| *it == port);
+        led.map_or(port, |(_, port)| *port).0 as u8
     }
 
     pub(crate) fn now(&self) -> Instant {
@@ -117,11 +177,11 @@ impl<'a> Session<'a> {
     }
 
     pub(crate) fn port(&self, role: &str) -> Option<PortIndex> {
-        self.lane
-            .ports()
-            .iter()
-            .position(|port| port.name == role)
-            .map(PortIndex)
+        let ports = self.lane.ports();
+        let is_called = |port: &PortIndex| ports.get(port.0).is_some_and(|it| it.name == role);
+        let connections = self.connections.iter().map(|(port, _)| *port);
+        let lasting = (0..self.lasting).map(PortIndex);
+        connections.chain(lasting).find(is_called)
     }
 
     pub(crate) fn port_name(&self, port: PortIndex) -> &str {
@@ -259,6 +319,18 @@ impl<'a> Session<'a> {
 
     /// Sends bytes without a gap, after the silence that ends whatever was on the line before.
     pub(crate) fn send_bytes(&mut self, port: PortIndex, bytes: &[u8]) -> Result<Sent, Stop> {
+        let characters = bytes.iter().copied().map(Character::new).collect();
+        self.send_characters(port, characters, None)
+    }
+
+    /// Sends characters without a gap: `after` the end of those before them, or else after the silence that ends whatever
+    /// was on the line.
+    pub(crate) fn send_characters(
+        &mut self,
+        port: PortIndex,
+        characters: Vec<Character>,
+        after: Option<Duration>,
+    ) -> Result<Sent, Stop> {
         let silence = self
             .serial_settings(port)
             .map_or(Duration::ZERO, SerialSettings::silence_3_5);
@@ -267,8 +339,12 @@ impl<'a> Session<'a> {
             .get(port.0)
             .copied()
             .unwrap_or(Instant::START);
-        let at = self.lane.now().max(quiet_since + silence);
-        let characters = bytes.iter().copied().map(Character::new).collect();
+        let at = match after {
+            Some(pause) => self.last_sent.end + pause,
+            None => self.lane.now().max(quiet_since + silence),
+        };
+        let bytes = characters.iter().map(|it| it.byte).collect();
+        let spoilt = characters.iter().any(|it| it.spoilt);
         let sent = self
             .lane
             .send(port, at, Transmission::Characters(characters))?;
@@ -278,10 +354,10 @@ impl<'a> Session<'a> {
         self.record_serial(SerialEvent {
             at_ns: sent.end.as_nanos(),
             start_ns: sent.start.as_nanos(),
-            port: port.0 as u8,
+            port: self.recorded_port(port),
             direction: Direction::Sent,
-            bytes: bytes.to_vec(),
-            spoilt: false,
+            bytes,
+            spoilt,
         });
         Ok(sent)
     }
@@ -419,6 +495,8 @@ impl<'a> Session<'a> {
                     message: Message::Can(frame),
                 })
             }
+            // Whoever still expects something there will miss it.
+            Reception::Connected | Reception::Closed => None,
             Reception::Character(character) => {
                 self.note_activity(arrival.port, arrival.at);
                 let assembler = self.assemblers.get_mut(arrival.port.0)?.as_mut()?;
@@ -455,7 +533,7 @@ impl<'a> Session<'a> {
         self.record_serial(SerialEvent {
             at_ns: frame.end.as_nanos(),
             start_ns: frame.start.as_nanos(),
-            port: port.0 as u8,
+            port: self.recorded_port(port),
             direction,
             bytes: frame.bytes.clone(),
             spoilt: frame.spoilt,

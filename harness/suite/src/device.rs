@@ -63,6 +63,11 @@ pub enum PortDescription {
         /// What the tester plays on this port: `teco-inverter`.
         companion: Option<String>,
     },
+    /// `{tcp: 502}`: Modbus TCP.
+    Tcp {
+        /// Where it listens.
+        port: u16,
+    },
 }
 
 /// Parity by name.

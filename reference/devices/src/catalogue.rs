@@ -47,6 +47,8 @@ pub enum Medium {
     },
     /// A serial port.
     Serial(SerialSettings),
+    /// A port of Modbus TCP; further connections are ports behind all that a device has.
+    Tcp,
 }
 
 /// How one device is to be built.

@@ -244,16 +244,16 @@ fn sample_register(query: &Query) -> Columns {
         ("-count", text("1")),
         ("-last", text("1")),
     ];
-    columns.extend(query.has.iter().filter_map(|has| {
-        let suffix = match has {
-            Has::Default => "-default",
-            Has::Low => "-low",
-            Has::High => "-high",
-            Has::Below => "-below",
-            Has::Above => "-above",
-            Has::Codes | Has::Bits => return None,
+    columns.extend(query.has.iter().flat_map(|has| {
+        let suffixes: &[&str] = match has {
+            Has::Default => &["-default"],
+            Has::Low => &["-low", "-last-low"],
+            Has::High => &["-high", "-last-high"],
+            Has::Below => &["-below", "-last-below"],
+            Has::Above => &["-above", "-last-above"],
+            Has::Codes | Has::Bits => &[],
         };
-        Some((suffix, text("1")))
+        suffixes.iter().map(|suffix| (*suffix, text("1")))
     }));
     columns
 }

@@ -3,6 +3,8 @@
 
 use std::time::Duration;
 
+use super::{Departure, TcpFault};
+
 /// In which order the two bytes of a CRC are sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrcOrder {
@@ -189,6 +191,12 @@ pub struct Behaviour {
     pub unknown_object_answered: bool,
     /// Whether it is not said that more objects follow.
     pub more_follows_missing: bool,
+    /// Legal variant: whether a header of Modbus TCP that is none ends the connection.
+    pub bad_header_closes: bool,
+    /// What else it does wrong.
+    pub departure: Option<Departure>,
+    /// How the TCP side departs from its specification.
+    pub tcp_fault: Option<TcpFault>,
 }
 
 impl Behaviour {
@@ -241,7 +249,15 @@ impl Behaviour {
         categories_ignored: false,
         unknown_object_answered: false,
         more_follows_missing: false,
+        bad_header_closes: false,
+        departure: None,
+        tcp_fault: None,
     };
+
+    /// Whether it departs so.
+    pub(super) fn departs(&self, departure: Departure) -> bool {
+        self.departure == Some(departure)
+    }
 }
 
 impl Default for Behaviour {

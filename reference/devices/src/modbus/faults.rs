@@ -1,6 +1,7 @@
 //! The faults that a Modbus side can be given, each one departure from one clause.
 
 use super::function_faults::{FUNCTIONS, LINE, REFUSALS};
+use super::tcp_faults::TCP;
 use super::{AddressChangeReply, ByteCount, CrcOrder, EchoedValue, SpeedSign};
 use crate::Fault;
 use crate::catalogue::all_of;
@@ -164,8 +165,14 @@ pub const FAULTS: &[Fault] = &[
 
 /// What a slave can have that has every function.
 pub(crate) const COMPLETE: [Fault;
-    COMMON.len() + 1 + LINE.len() + REFUSALS.len() + FUNCTIONS.len()] =
-    all_of(&[COMMON, &[WRITE_MULTIPLE_FORGETS], LINE, REFUSALS, FUNCTIONS]);
+    COMMON.len() + 1 + LINE.len() + REFUSALS.len() + FUNCTIONS.len() + TCP.len()] = all_of(&[
+    COMMON,
+    &[WRITE_MULTIPLE_FORGETS],
+    LINE,
+    REFUSALS,
+    FUNCTIONS,
+    TCP,
+]);
 
 /// What every Modbus slave here can have.
 pub(crate) const COMMON: &[Fault] = &[

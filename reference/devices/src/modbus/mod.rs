@@ -6,6 +6,7 @@
 pub mod behaviour;
 mod counters;
 pub mod crc;
+mod departure;
 mod exception;
 pub mod faults;
 pub mod framing;
@@ -17,17 +18,21 @@ mod registers;
 pub(crate) mod script;
 pub mod slave;
 pub mod stream;
+mod tcp_faults;
+mod tcp_side;
 pub(crate) mod variants;
 
 pub use behaviour::{
     AddressChangeReply, Behaviour, ByteCount, CrcOrder, EchoedValue, ExceptionCodes, Remains,
     SpeedSign,
 };
+pub use departure::Departure;
 pub use exception::Exception;
 pub use faults::FAULTS;
 pub use master::{Failure, ModbusMaster, Reply, RequestId};
 pub use registers::{Command, Registers};
 pub use slave::ModbusSlave;
+pub use tcp_side::TcpFault;
 
 #[cfg(test)]
 mod tests;
