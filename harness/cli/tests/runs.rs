@@ -250,7 +250,10 @@ fn devices_and_faults_are_listed_as_data() {
     let faults = list("faults");
     assert_eq!(
         faults.len(),
-        kinds.iter().map(|kind| kind.faults.len()).sum::<usize>()
+        kinds
+            .iter()
+            .map(|kind| kind.faults().count())
+            .sum::<usize>()
     );
     assert!(
         faults

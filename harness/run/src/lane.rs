@@ -18,8 +18,9 @@ use fieldproof_wire::canopen::NodeId;
 use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
 use crate::entries;
-use crate::node::NodeWatch;
+use crate::node::{HEARTBEAT, NodeWatch};
 use crate::relocate::relocate;
+use crate::sdo::Outcome;
 use crate::session::Session;
 use crate::steps::main_role;
 use crate::stop::Stop;
@@ -202,6 +203,12 @@ impl<'a> Player<'a> {
             true => NmtState::Operational,
             false => NmtState::PreOperational,
         };
+        if tester.claims(Feature::HeartbeatProducer)
+            && let Ok(Outcome::Done(found)) =
+                tester.sdo_upload(HEARTBEAT, tester.device.timing.sdo_response)
+        {
+            tester.watch.found_heartbeat(found.of_size(Some(2)));
+        }
         tester.session.begin_case();
         let now = tester.session.now();
         tester.watch.found(state, now);

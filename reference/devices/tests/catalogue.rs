@@ -30,7 +30,7 @@ const SUITES: [&str; 16] = [
 
 /// Every way to build a device of a kind: as it is, with each fault, as each variant.
 fn ways(kind: &DeviceKind) -> Vec<Settings> {
-    let faults = kind.faults.iter().map(|fault| Settings {
+    let faults = kind.faults().map(|fault| Settings {
         fault: Some(fault.name.to_owned()),
         ..Settings::default()
     });
@@ -62,7 +62,7 @@ fn names_are_unique_and_every_fault_says_what_it_breaks() {
     );
     for kind in kinds() {
         let mut seen = BTreeSet::new();
-        for fault in kind.faults {
+        for fault in kind.faults() {
             assert!(seen.insert(fault.name), "{} twice", fault.name);
             assert!(SUITES.contains(&fault.caught_by), "{}", fault.caught_by);
             assert!(!fault.breaks.is_empty() && !fault.words.is_empty());

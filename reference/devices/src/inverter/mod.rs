@@ -21,7 +21,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "serial",
         medium: Medium::Serial(LINE),
     }],
-    faults: modbus::faults::COMMON,
+    faults: &[modbus::faults::COMMON],
     variants: &[modbus::variants::SLOW],
     build,
 };

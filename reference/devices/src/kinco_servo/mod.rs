@@ -14,7 +14,7 @@ use crate::canopen::{
     service_faults,
 };
 use crate::catalogue::{
-    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
 };
 use crate::drive::{self, DriveNode, Model};
 
@@ -37,20 +37,14 @@ const OWN_FAULTS: &[Fault] = &[
     faults::GUARDING_TOGGLE_STUCK,
     faults::MAPPING_ENTRY_BYTE_ORDER,
 ];
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + error_control_faults::COMMON.len()
-        + OWN_FAULTS.len()
-        + drive::faults::COMMON.len()
-        + drive::faults::OPTIONS.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     OWN_FAULTS,
     drive::faults::COMMON,
     drive::faults::OPTIONS,
-]);
+];
 
 /// The slides have what profile position (607Ah, 6081h) and profile velocity (60FFh) need, and no other mode.
 const MODEL: Model = Model {
@@ -68,7 +62,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "can",
         medium: Medium::Can { bit_rate: BIT_RATE },
     }],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         Variant {
             name: "download-data-not-echoed",

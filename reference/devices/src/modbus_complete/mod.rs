@@ -21,7 +21,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "serial",
         medium: Medium::Serial(tables::LINE),
     }],
-    faults: &modbus::faults::COMPLETE,
+    faults: modbus::faults::COMPLETE,
     variants: &[
         modbus::variants::SLOW,
         modbus::variants::GAPS_TOLERATED,

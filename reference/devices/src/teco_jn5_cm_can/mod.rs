@@ -16,7 +16,7 @@ use fieldproof_link::{
 use crate::canopen::{
     self, Address, Factory, Profile, Slave, TransmitEvent, error_control_faults, faults, nmt_faults,
 };
-use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of};
+use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault};
 use crate::inverter;
 pub use behaviour::{Behaviour, Lost, RunState, TargetSign};
 use gateway::Gateway;
@@ -59,16 +59,12 @@ const OWN_FAULTS: &[Fault] = &[
     behaviour::STATION_UNCHECKED,
     behaviour::EXCEPTION_AS_VALUE,
 ];
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + error_control_faults::COMMON.len()
-        + OWN_FAULTS.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     OWN_FAULTS,
-]);
+];
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -84,7 +80,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(inverter::LINE),
         },
     ],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         behaviour::STATUSWORD_OF_CIA402,
         behaviour::DEMAND_BEHIND_RAMP,
