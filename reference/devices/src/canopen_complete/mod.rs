@@ -1,12 +1,11 @@
 //! A slave that has all that CiA 301 and CiA 305 give one: 500 kbit/s, node 10. It is no vendor's.
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
 };
 
 use crate::canopen::{
@@ -219,7 +218,7 @@ impl Participant for Complete {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         let mut state = self.slave.state();
         state.extend(self.values.conditions.state());
         state

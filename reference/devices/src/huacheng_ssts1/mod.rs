@@ -2,13 +2,13 @@
 
 pub(crate) mod registers;
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::canopen::{
@@ -248,7 +248,7 @@ impl Participant for HuachengSsts1 {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         use modbus::Registers as _;
         let mut state = self.node.state();
         state.extend(self.modbus.registers().state());

@@ -2,11 +2,9 @@
 
 mod registers;
 
-use std::collections::BTreeMap;
-
 use fieldproof_link::{
-    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
-    Transmission,
+    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus,
+    StimulusKind, Transmission,
 };
 
 use crate::catalogue::{DeviceKind, Medium, PortKind, Settings, UnknownFault};
@@ -132,7 +130,7 @@ impl Participant for Inverter {
     }
 
     /// Every register: `register 2501`, the value in decimal.
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.slave.state()
     }
 }

@@ -1,12 +1,11 @@
 //! A Kinco servo drive on CAN: 500 kbit/s, node 1.
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
 };
 
 use crate::canopen::{
@@ -188,7 +187,7 @@ impl Participant for KincoServo {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.node.state()
     }
 }

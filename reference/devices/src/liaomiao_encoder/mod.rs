@@ -6,13 +6,13 @@ mod model;
 mod registers;
 mod shaft;
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::canopen::{
@@ -314,7 +314,7 @@ impl Participant for LiaomiaoEncoder {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         use modbus::Registers as _;
         let mut state = self.slave.state();
         state.extend(self.modbus.registers().state());

@@ -3,10 +3,9 @@
 mod identification;
 mod tables;
 
-use std::collections::BTreeMap;
-
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
@@ -120,7 +119,7 @@ impl Participant for ModbusComplete {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.modbus.state()
     }
 }

@@ -4,13 +4,13 @@
 mod behaviour;
 mod gateway;
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, StateName, Stimulus,
+    StimulusKind, Transmission,
 };
 
 use crate::canopen::{
@@ -252,11 +252,10 @@ impl Participant for TecoJn5CmCan {
     }
 
     /// Without 2025h: its values are the inverter's.
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         let mut state = self.slave.state();
-        state.retain(|name, _| !name.starts_with("2025:"));
-        let operation = format!("{:04X}", self.gateway.operation());
-        state.insert("operation signal".to_owned(), operation);
+        state.retain(|name| !matches!(name, StateName::Object("", 0x2025, _)));
+        state.insert("operation signal", self.gateway.operation());
         state
     }
 }

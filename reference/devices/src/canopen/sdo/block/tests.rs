@@ -145,7 +145,7 @@ impl Participant for Blocks {
         Err(NotOffered)
     }
 
-    fn state(&self) -> std::collections::BTreeMap<String, String> {
+    fn state(&self) -> fieldproof_link::State {
         self.slave.state()
     }
 }
