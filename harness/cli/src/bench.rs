@@ -210,6 +210,7 @@ pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>
     Bench {
         fixed_rates: roles(|port| !port.sets_bit_rate),
         modbus_tcp: roles(|port| port.line == Line::Stream(Framing::ModbusTcp)),
+        streams: roles(|port| matches!(port.line, Line::Stream(_))),
         ..bench_of(device, ports, lane.offers().into_iter().collect(), permits)
     }
 }
@@ -246,8 +247,12 @@ fn bench_of(
         }
     }
     let description = &device.description;
-    let links = device.place.iter().flat_map(|place| &place.links);
-    let over_tcp = links.filter(|(_, link)| {
+    let links = || device.place.iter().flat_map(|place| &place.links);
+    let links_over_tcp = links()
+        .filter(|(_, link)| link.kind == LinkKind::Tcp)
+        .map(|(role, _)| role.clone())
+        .collect();
+    let over_tcp = links().filter(|(_, link)| {
         link.kind == LinkKind::Tcp && link.parameters.framing != Some(bench::Framing::Rtu)
     });
     let over_tcp = over_tcp.map(|(role, _)| role);
@@ -258,6 +263,7 @@ fn bench_of(
     Bench {
         modbus_tcp: over_tcp.chain(described).cloned().collect(),
         ports,
+        streams: links_over_tcp,
         fixed_rates: BTreeSet::new(),
         stimuli,
         permits,

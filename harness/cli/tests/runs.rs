@@ -187,7 +187,11 @@ fn proof_holds_for_a_fault_that_is_caught() {
     assert_eq!(proof["holds"], true);
     let caught = proof["rounds"].as_array().unwrap().last().unwrap();
     assert_eq!(caught["guise"]["name"], "stale-crc-accepted");
-    assert_eq!(caught["failed"][0], "modbus.crc/spoilt-bit");
+    let failed = caught["failed"].as_array().unwrap();
+    assert!(
+        failed.contains(&"modbus.crc/spoilt-bit".into()),
+        "{failed:?}"
+    );
     assert_eq!(folder.files(), Vec::<String>::new());
 }
 
@@ -250,7 +254,10 @@ fn devices_and_faults_are_listed_as_data() {
     let faults = list("faults");
     assert_eq!(
         faults.len(),
-        kinds.iter().map(|kind| kind.faults.len()).sum::<usize>()
+        kinds
+            .iter()
+            .map(|kind| kind.faults().count())
+            .sum::<usize>()
     );
     assert!(
         faults

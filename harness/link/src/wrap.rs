@@ -1,12 +1,12 @@
 //! Lanes that stand before a lane.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
 use crate::{
     Arrival, Character, CompanionIndex, Farewell, Instant, Lane, Line, LinkError, NotOffered,
-    Origin, Parity, Participant, PortIndex, PortProperties, Reception, Sent, Stimulus,
+    Origin, Parity, Participant, PortIndex, PortProperties, Reception, Sent, State, Stimulus,
     StimulusError, StimulusKind, Transmission,
 };
 
@@ -156,7 +156,7 @@ impl<L: Lane> Lane for FaultyLine<L> {
         self.lane.disconnect(port, how)
     }
 
-    fn device_state(&self) -> BTreeMap<String, String> {
+    fn device_state(&self) -> State {
         self.lane.device_state()
     }
 }

@@ -7,8 +7,8 @@ use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature, FunctionCode, Parity, PortDescription};
 use fieldproof_suite::identity::Claim;
 use fieldproof_suite::model::{
-    Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
-    SendBytes, Step, Stimulate, StimulusName,
+    Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, PauseLength, Protocol,
+    ReadExpectation, SdoRead, SendBytes, Step, Stimulate, StimulusName,
 };
 use fieldproof_suite::scalar::ObjectAddress;
 
@@ -24,6 +24,8 @@ pub struct Bench {
     pub fixed_rates: BTreeSet<String>,
     /// Those of them whose link is Modbus TCP, where a header stands around a PDU instead of address and CRC.
     pub modbus_tcp: BTreeSet<String>,
+    /// Those of them on which a frame ends by its length, not by silence.
+    pub streams: BTreeSet<String>,
     /// The stimuli it offers.
     pub stimuli: BTreeSet<StimulusKind>,
     /// The effects it permits.
@@ -49,6 +51,8 @@ pub fn skip_reason(
         .or_else(|| missing_need(case, device, dictionary, bench))
         .or_else(|| rtu_alone(case, bench))
         .or_else(|| no_parity(case, device, bench))
+        .or_else(|| no_characters(case, bench))
+        .or_else(|| no_silences(case, bench))
         .or_else(|| missing_claim(case, device))
         .or_else(|| missing_objects(case, dictionary))
         .or_else(|| missing_permission(case, device, bench))
@@ -190,6 +194,27 @@ fn no_parity(case: &Case, device: &DeviceDescription, bench: &Bench) -> Option<S
     let carries = has_parity && !bench.fixed_rates.contains(SERIAL);
     let mut steps = case.control.iter().chain(&case.steps);
     (steps.any(spoils) && !carries).then(|| "the line has no parity bit".to_owned())
+}
+
+/// What follows a frame without a silence belongs to it only where silence ends a frame.
+fn no_silences(case: &Case, bench: &Bench) -> Option<String> {
+    let follows = |step: &Located<Step>| matches!(&step.value, Step::SendBytes(SendBytes { then, port: None, .. }) if !then.is_empty());
+    let mut steps = case.control.iter().chain(&case.steps);
+    (steps.any(follows) && bench.streams.contains(SERIAL))
+        .then(|| "no silence ends a frame on this link".to_owned())
+}
+
+/// A silence is counted in characters where characters take no time.
+fn no_characters(case: &Case, bench: &Bench) -> Option<String> {
+    let counts = |step: &Located<Step>| match &step.value {
+        Step::SendBytes(SendBytes {
+            pause: Some(pause), ..
+        }) => matches!(pause.lasting, PauseLength::Characters(_)),
+        _ => false,
+    };
+    let mut steps = case.control.iter().chain(&case.steps);
+    (steps.any(counts) && bench.fixed_rates.contains(SERIAL))
+        .then(|| "characters take no time on this link".to_owned())
 }
 
 fn rtu_step(step: &Step, bench: &Bench) -> Option<String> {

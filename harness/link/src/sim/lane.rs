@@ -1,6 +1,5 @@
 //! The simulated lane as the engine sees it.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::medium::Medium;
@@ -8,7 +7,7 @@ use super::world::{Hung, World};
 use crate::lane::not_a_connection;
 use crate::{
     Arrival, CompanionIndex, Farewell, Instant, Lane, Line, LinkError, NotOffered, Participant,
-    PortIndex, PortProperties, Sent, Stimulus, StimulusError, StimulusKind, Transmission,
+    PortIndex, PortProperties, Sent, State, Stimulus, StimulusError, StimulusKind, Transmission,
 };
 
 /// How long a CAN frame of the tester's may wait for its start: for the bus, and for a node to acknowledge it.
@@ -205,7 +204,7 @@ impl Lane for SimLane {
         Ok(())
     }
 
-    fn device_state(&self) -> BTreeMap<String, String> {
+    fn device_state(&self) -> State {
         let device = self
             .device
             .and_then(|device| self.world.participant(device));

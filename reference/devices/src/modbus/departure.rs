@@ -13,6 +13,8 @@ pub enum Departure {
     IdleLineEndsFrame,
     /// A frame ends after 20 ms of silence, and what is quiet inside it does not matter.
     PatientLine,
+    /// It sends the request back before its answer.
+    EchoesRequest,
     /// Bytes that a request lacks count as 0.
     ShortPduFilled,
     /// Bit 7 of the function is not looked at.

@@ -43,6 +43,8 @@ faults! {
         "takes bytes that a request lacks for 0", departure = Some(Departure::ShortPduFilled);
     "high-bit-ignored", "MODBUS application protocol V1.1b3, 4.1: function codes are 1 to 127",
         "does what the function without its highest bit asks", departure = Some(Departure::HighBitIgnored);
+    "request-echoed", "MODBUS over serial line V1.02, 2.4.1: a slave sends nothing but its answer",
+        "sends the request back before its answer", departure = Some(Departure::EchoesRequest);
     "answers-late", "the answer comes in the time that the device promises, or in a second",
         "answers after 1.2 s", processing_delay = Duration::from_millis(1_200);
     "broadcast-ignored", "MODBUS over serial line V1.02, 2.1: all slaves must accept the broadcast for writing functions",

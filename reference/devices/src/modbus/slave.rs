@@ -1,9 +1,10 @@
 //! A Modbus slave around a set of registers: on a serial line, or on a connection.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fieldproof_link::{Character, Framing, Instant, Line, Reception, SerialSettings, Transmission};
+use fieldproof_link::{
+    Character, Framing, Instant, Line, Reception, SerialSettings, State, Transmission,
+};
 
 use super::counters::Counters;
 use super::crc;
@@ -91,10 +92,10 @@ impl<R: Registers> ModbusSlave<R> {
     }
 
     /// What a case could have left changed, the line apart.
-    pub fn state(&self) -> BTreeMap<String, String> {
+    pub fn state(&self) -> State {
         let mut state = self.registers.state();
         let listens = self.counters.listens_only;
-        state.insert("modbus listens only".to_owned(), listens.to_string());
+        state.insert("modbus listens only", listens);
         state
     }
 
@@ -139,7 +140,7 @@ impl<R: Registers> ModbusSlave<R> {
 
     /// What it sends over a connection of Modbus TCP, if anything.
     pub fn wake_tcp(&mut self, now: Instant) -> Option<(usize, Transmission)> {
-        if let Some(port) = self.tcp.to_close() {
+        if let Some(port) = self.tcp.take_ended() {
             return Some((port, Transmission::Close));
         }
         if let Some(request) = self.tcp.next_request(&self.behaviour)
@@ -246,7 +247,11 @@ impl<R: Registers> ModbusSlave<R> {
         }
         let (request, _) = whole?;
         let body = self.answer_body(request, self.is_over_tcp())?;
-        Some(crc::with_crc(body, self.behaviour.crc_order))
+        let answer = crc::with_crc(body, self.behaviour.crc_order);
+        match self.behaviour.departs(Departure::EchoesRequest) {
+            true => Some([received.bytes.as_slice(), &answer].concat()),
+            false => Some(answer),
+        }
     }
 
     /// Whether it does not hear the frame after this one.

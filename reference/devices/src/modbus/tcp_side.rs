@@ -217,7 +217,7 @@ impl TcpSide {
     }
 
     /// A connection that it ends now.
-    pub(super) fn to_close(&mut self) -> Option<usize> {
+    pub(super) fn take_ended(&mut self) -> Option<usize> {
         let port = self.to_close.pop()?;
         self.connections.remove(&port);
         Some(port)

@@ -4,11 +4,9 @@
 mod identification;
 mod tables;
 
-use std::collections::BTreeMap;
-
 use fieldproof_link::{
-    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
-    Transmission,
+    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus,
+    StimulusKind, Transmission,
 };
 
 use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
@@ -32,7 +30,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Tcp,
         },
     ],
-    faults: &modbus::faults::COMPLETE,
+    faults: modbus::faults::COMPLETE,
     variants: &[
         modbus::variants::SLOW,
         modbus::variants::GAPS_TOLERATED,
@@ -162,10 +160,12 @@ impl Participant for ModbusComplete {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.modbus.state()
     }
 }
 
+#[cfg(test)]
+mod tcp_tests;
 #[cfg(test)]
 mod tests;
