@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::{Departure, TcpFault};
+use super::{Departure, RegisterFault, RegisterFaultKind, TcpFault};
 
 /// In which order the two bytes of a CRC are sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -193,6 +193,8 @@ pub struct Behaviour {
     pub more_follows_missing: bool,
     /// Legal variant: whether a header of Modbus TCP that is none ends the connection.
     pub bad_header_closes: bool,
+    /// The register that is not as its map says.
+    pub register_fault: Option<RegisterFault>,
     /// What else it does wrong.
     pub departure: Option<Departure>,
     /// How the TCP side departs from its specification.
@@ -250,9 +252,16 @@ impl Behaviour {
         unknown_object_answered: false,
         more_follows_missing: false,
         bad_header_closes: false,
+        register_fault: None,
         departure: None,
         tcp_fault: None,
     };
+
+    /// Whether a register is not as its map says, in this way.
+    pub(super) fn spoils(&self, kind: RegisterFaultKind, address: u16) -> bool {
+        self.register_fault
+            .is_some_and(|fault| fault.is(kind, address))
+    }
 
     /// Whether it departs so.
     pub(super) fn departs(&self, departure: Departure) -> bool {

@@ -32,6 +32,8 @@ pub(super) struct Service<'a, R> {
     pub(super) counters: &'a mut Counters,
     /// Whether it is at the end of a Modbus TCP connection.
     pub(super) over_tcp: bool,
+    /// What the register of a [`super::RegisterFault`] held before anybody wrote it.
+    pub(super) first_value: Option<u16>,
 }
 
 impl<R: Registers> Service<'_, R> {

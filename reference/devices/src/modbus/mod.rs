@@ -13,6 +13,7 @@ pub mod framing;
 mod function_faults;
 mod functions;
 pub mod master;
+mod register_fault;
 mod registers;
 #[cfg(test)]
 pub(crate) mod script;
@@ -30,6 +31,7 @@ pub use departure::Departure;
 pub use exception::Exception;
 pub use faults::FAULTS;
 pub use master::{Failure, ModbusMaster, Reply, RequestId};
+pub use register_fault::{RegisterFault, RegisterFaultKind};
 pub use registers::{Command, Registers};
 pub use slave::ModbusSlave;
 pub use tcp_side::TcpFault;

@@ -12,7 +12,7 @@ use super::framing::{Framer, LONGEST_FRAME, Received};
 use super::functions::{Outcome, Service};
 use super::stream::{Request, StreamFramer};
 use super::tcp_side::{self, TcpSide};
-use super::{Behaviour, Command, Departure, Exception, Registers};
+use super::{Behaviour, Command, Departure, Exception, RegisterFault, Registers};
 
 const BROADCAST: u8 = 0;
 /// [`Departure::RestsAfterAnswer`]
@@ -34,6 +34,8 @@ pub struct ModbusSlave<R> {
     chance: fastrand::Rng,
     reply: Option<(Instant, Vec<u8>)>,
     sending_until: Option<Instant>,
+    /// What the register of a [`super::RegisterFault`] held before anybody wrote it.
+    first_value: Option<u16>,
     /// It does not hear the next frame.
     is_deaf: bool,
     /// It hears nothing whole until then.
@@ -44,7 +46,10 @@ impl<R: Registers> ModbusSlave<R> {
     /// A slave that behaves so; `seed` fixes its jitter.
     pub fn new(registers: R, behaviour: Behaviour, seed: u64) -> ModbusSlave<R> {
         let line = registers.serial();
+        let spoilt = behaviour.register_fault.map(RegisterFault::address);
+        let first_value = spoilt.and_then(|it| registers.read(it, &behaviour).ok());
         ModbusSlave {
+            first_value,
             framer: framer(line, &behaviour),
             registers,
             behaviour,
@@ -346,6 +351,7 @@ impl<R: Registers> ModbusSlave<R> {
     fn service(&mut self, over_tcp: bool) -> Service<'_, R> {
         Service {
             over_tcp,
+            first_value: self.first_value,
             registers: &mut self.registers,
             behaviour: &self.behaviour,
             counters: &mut self.counters,

@@ -1,7 +1,7 @@
 //! 03h, 04h, 06h, 10h, 16h, 17h: registers.
 
 use super::{Extent, Service, counted, two_words};
-use crate::modbus::{ByteCount, Departure, EchoedValue, Exception, Registers};
+use crate::modbus::{ByteCount, Departure, EchoedValue, Exception, RegisterFaultKind, Registers};
 
 /// Most registers of one 03h, 04h or 17h.
 const MOST_READ: u16 = 125;
@@ -48,7 +48,21 @@ impl<R: Registers> Service<'_, R> {
     }
 
     fn holding(&self, register: u16) -> Result<u16, Exception> {
-        self.or_hole(self.registers.read(register, self.behaviour))
+        if self.behaviour.spoils(RegisterFaultKind::Missing, register) {
+            return Err(Exception::IllegalDataAddress);
+        }
+        if self.behaviour.spoils(RegisterFaultKind::Surplus, register) {
+            return Ok(0);
+        }
+        let held = self.or_hole(self.registers.read(register, self.behaviour))?;
+        let is_default = self.first_value == Some(held)
+            && self
+                .behaviour
+                .spoils(RegisterFaultKind::WrongDefault, register);
+        Ok(match is_default {
+            true => held ^ 1,
+            false => held,
+        })
     }
 
     fn or_hole(&self, read: Result<u16, Exception>) -> Result<u16, Exception> {
@@ -60,7 +74,12 @@ impl<R: Registers> Service<'_, R> {
 
     /// Whether a register takes a value; `false` if that is only pretended.
     fn check_write(&self, register: u16, value: u16) -> Result<bool, Exception> {
+        let spoils = |kind| self.behaviour.spoils(kind, register);
         match self.registers.check_write(register, value) {
+            Ok(()) if spoils(RegisterFaultKind::ReadOnly) => Err(Exception::IllegalDataAddress),
+            Ok(()) if spoils(RegisterFaultKind::NotWritten) => Ok(false),
+            Err(Exception::IllegalDataValue) if spoils(RegisterFaultKind::Unlimited) => Ok(true),
+            Err(_) if spoils(RegisterFaultKind::Writable) => Ok(false),
             Err(Exception::IllegalDataValue) if self.behaviour.limits_ignored => Ok(true),
             Err(Exception::IllegalDataAddress)
                 if self.behaviour.read_only_confirmed
