@@ -264,7 +264,7 @@ impl Behaviour {
     }
 
     /// Whether it departs so.
-    pub(super) fn departs(&self, departure: Departure) -> bool {
+    pub(crate) fn departs(&self, departure: Departure) -> bool {
         self.departure == Some(departure)
     }
 }

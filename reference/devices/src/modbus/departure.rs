@@ -15,6 +15,8 @@ pub enum Departure {
     PatientLine,
     /// It sends the request back before its answer.
     EchoesRequest,
+    /// Encoder only: the text before the new address is not looked at.
+    AddressTextIgnored,
     /// Bytes that a request lacks count as 0.
     ShortPduFilled,
     /// Bit 7 of the function is not looked at.

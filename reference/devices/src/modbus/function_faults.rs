@@ -25,8 +25,6 @@ faults! {
         "answers a request if the first byte of its CRC is right", crc_half_checked = true;
     "runts-kept", "MODBUS over serial line V1.02, 2.5.1.1: a frame begins after a silence",
         "keeps bytes that were too few for a frame, and puts them before the next one", frame_remains = Some(Remains::OfRunts);
-    "parity-ignored", "MODBUS over serial line V1.02, 2.5.1: a character with a wrong parity bit spoils the frame",
-        "answers a request with a character whose parity bit is wrong", parity_ignored = true;
     "long-frames-cut", "MODBUS over serial line V1.02, 2.5.1: a frame has at most 256 bytes",
         "takes the first 256 bytes of a longer frame for a frame", frame_remains = Some(Remains::OfLongFrames);
     "deaf-after-long-frame", "MODBUS over serial line V1.02, 2.5.1: a frame that is none is discarded, and nothing more",
@@ -39,16 +37,24 @@ faults! {
         "takes a silence of one character for the end of a frame", departure = Some(Departure::IdleLineEndsFrame);
     "patient-line", "MODBUS over serial line V1.02, 2.5.1.1: 3.5 characters of silence end a frame",
         "goes on with a frame for 20 ms after it has stopped", departure = Some(Departure::PatientLine);
-    "short-pdu-filled", "MODBUS application protocol V1.1b3, 7: a request that is not built as its function has it is answered with exception 03",
-        "takes bytes that a request lacks for 0", departure = Some(Departure::ShortPduFilled);
     "high-bit-ignored", "MODBUS application protocol V1.1b3, 4.1: function codes are 1 to 127",
         "does what the function without its highest bit asks", departure = Some(Departure::HighBitIgnored);
     "request-echoed", "MODBUS over serial line V1.02, 2.4.1: a slave sends nothing but its answer",
         "sends the request back before its answer", departure = Some(Departure::EchoesRequest);
     "answers-late", "the answer comes in the time that the device promises, or in a second",
         "answers after 1.2 s", processing_delay = Duration::from_millis(1_200);
+    "single-not-written", "MODBUS application protocol V1.1b3, 6.6: 06h writes a register",
+        "confirms 06h and does not do it", departure = Some(Departure::SingleNotWritten);
+
+    #[doc = "What a slave on a serial line can have of which registers can be written without more ado."] WRITES:
+    "short-pdu-filled", "MODBUS application protocol V1.1b3, 7: a request that is not built as its function has it is answered with exception 03",
+        "takes bytes that a request lacks for 0", departure = Some(Departure::ShortPduFilled);
     "broadcast-ignored", "MODBUS over serial line V1.02, 2.1: all slaves must accept the broadcast for writing functions",
         "does nothing for a request to address 0", broadcast_ignored = true;
+
+    #[doc = "What a slave on a line with parity can have."] PARITY:
+    "parity-ignored", "MODBUS over serial line V1.02, 2.5.1: a character with a wrong parity bit spoils the frame",
+        "answers a request with a character whose parity bit is wrong", parity_ignored = true;
 
     #[doc = "What any slave can have that refuses things."] REFUSALS:
     "unknown-function-silent", "MODBUS application protocol V1.1b3, 7: a function that is not supported is answered with exception 01",
@@ -93,8 +99,6 @@ faults! {
         "answers 07h with two bytes", departure = Some(Departure::ExceptionStatusLong);
     "addresses-from-1", "MODBUS application protocol V1.1b3, 4.4: the first address in a PDU is 0",
         "reads and writes one address too far", departure = Some(Departure::AddressesFromOne);
-    "single-not-written", "MODBUS application protocol V1.1b3, 6.6: 06h writes a register",
-        "confirms 06h and does not do it", departure = Some(Departure::SingleNotWritten);
     "coil-not-written", "MODBUS application protocol V1.1b3, 6.5: 05h switches a coil",
         "confirms 05h and does not do it", departure = Some(Departure::CoilNotWritten);
     "multiple-echoes-bytes", "MODBUS application protocol V1.1b3, 6.12: the answer to 10h has the number of registers",
