@@ -95,7 +95,9 @@ fn missing_need(
                 multiplexer(*missing)
             ))
         }
-        Need::Functions(functions) => missing_function(functions, device),
+        Need::Functions(functions) => {
+            missing_function(functions, device).or_else(|| serial_line_only(functions, bench))
+        }
         Need::Feature(feature) if !is_claimed(*feature, device, bench) => Some(format!(
             "the device does not claim {}",
             feature_name(*feature)
@@ -106,6 +108,17 @@ fn missing_need(
         )),
         _ => None,
     })
+}
+
+/// Functions that the specification has for serial lines only.
+const SERIAL_LINE_ONLY: [u8; 5] = [0x07, 0x08, 0x0B, 0x0C, 0x11];
+
+fn serial_line_only(functions: &[FunctionCode], bench: &Bench) -> Option<String> {
+    let mut of_lines = functions
+        .iter()
+        .filter(|it| SERIAL_LINE_ONLY.contains(&it.function));
+    let function = of_lines.next().filter(|_| is_over_tcp(bench))?;
+    Some(format!("function {function} is for serial lines"))
 }
 
 fn missing_function(functions: &[FunctionCode], device: &DeviceDescription) -> Option<String> {
