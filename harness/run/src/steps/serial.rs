@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fieldproof_can::BytePattern;
-use fieldproof_link::{Character, Farewell, Parity, PortIndex};
+use fieldproof_link::{Character, Farewell, Parity, PortIndex, SerialSettings};
 use fieldproof_suite::model::{Crc, Disconnect, ExpectBytes, OtherBytes, PauseLength, SendBytes};
 use fieldproof_wire::modbus::crc16_bytes;
 
@@ -99,16 +99,7 @@ impl Tester<'_> {
             return Ok(());
         };
         let uncertainty = self.session.uncertainty(port);
-        let (least, most) = (measured.saturating_sub(uncertainty), measured + uncertainty);
-        let across = |limit: Duration| match meant <= limit {
-            true => most > limit,
-            false => least <= limit,
-        };
-        let limits = [
-            (settings.silence_1_5(), "1.5 characters"),
-            (settings.silence_3_5(), "3.5 characters"),
-        ];
-        match limits.into_iter().find(|(limit, _)| across(*limit)) {
+        match blurred_limit(settings, measured, uncertainty, meant) {
             None => Ok(()),
             Some((limit, name)) => Err(Stop::undecided(
                 format!("the silence among the bytes cannot be told from {name} on this link"),
@@ -197,6 +188,24 @@ impl Tester<'_> {
     }
 }
 
+/// The silence of 1.5 or 3.5 characters of which nobody can say that what was measured is on the side of it that was meant.
+fn blurred_limit(
+    settings: SerialSettings,
+    measured: Duration,
+    uncertainty: Duration,
+    meant: Duration,
+) -> Option<(Duration, &'static str)> {
+    let (least, most) = (measured.saturating_sub(uncertainty), measured + uncertainty);
+    let limits = [
+        (settings.silence_1_5(), "1.5 characters"),
+        (settings.silence_3_5(), "3.5 characters"),
+    ];
+    limits.into_iter().find(|(limit, _)| match meant <= *limit {
+        true => most > *limit,
+        false => least <= *limit,
+    })
+}
+
 fn wrong_bytes(step: &ExpectBytes, bytes: &[u8], spoilt: bool) -> Stop {
     let expected = &step.bytes.0;
     let came = match bytes {
@@ -266,7 +275,34 @@ fn with_crc(bytes: &[u8], crc: Crc) -> Result<Vec<u8>, Stop> {
 
 #[cfg(test)]
 mod tests {
+    use fieldproof_link::StopBits;
+
     use super::*;
+
+    #[test]
+    fn a_silence_must_be_on_the_side_that_was_meant() {
+        // 10 bits at 10 kBd: 1.5 characters are 1.5 ms, 3.5 are 3.5 ms.
+        let settings = SerialSettings {
+            baud: 10_000,
+            parity: Parity::None,
+            stop_bits: StopBits::One,
+        };
+        let blurred = |measured: u64, uncertainty: u64, meant: u64| {
+            let us = Duration::from_micros;
+            let limit = blurred_limit(settings, us(measured), us(uncertainty), us(meant));
+            limit.map(|(_, name)| name)
+        };
+        assert_eq!(blurred(1_000, 0, 1_000), None);
+        assert_eq!(blurred(1_000, 500, 1_000), None);
+        assert_eq!(blurred(1_000, 501, 1_000), Some("1.5 characters"));
+        // It came out longer than it was meant.
+        assert_eq!(blurred(1_600, 0, 1_000), Some("1.5 characters"));
+        assert_eq!(blurred(2_500, 900, 2_500), None);
+        assert_eq!(blurred(2_500, 1_000, 2_500), Some("1.5 characters"));
+        assert_eq!(blurred(3_400, 200, 2_500), Some("3.5 characters"));
+        assert_eq!(blurred(5_000, 1_000, 5_000), None);
+        assert_eq!(blurred(5_000, 1_500, 5_000), Some("3.5 characters"));
+    }
 
     #[test]
     fn a_crc_that_the_pattern_leaves_open_must_be_right() {

@@ -241,6 +241,31 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_pause_is_a_time_or_characters() {
+        let read = |text| PauseLength::parse(text).ok();
+        assert_eq!(
+            read("20 ms"),
+            Some(PauseLength::Time(Duration::from_millis(20)))
+        );
+        for (text, thousandths) in [
+            ("2.5 characters", 2_500),
+            ("1 characters", 1_000),
+            ("0.125characters", 125),
+        ] {
+            assert_eq!(read(text), Some(PauseLength::Characters(thousandths)));
+        }
+        for text in [
+            "2.5",
+            "characters",
+            "1.2345 characters",
+            "-1 characters",
+            "x characters",
+        ] {
+            assert_eq!(read(text), None, "{text}");
+        }
+    }
+
+    #[test]
     fn durations_have_units() {
         let nanoseconds = |text| Time::parse(text).map(|time| time.0.as_nanos());
         assert_eq!(nanoseconds("50 ms"), Ok(50_000_000));
