@@ -50,6 +50,7 @@ pub fn skip_reason(
         .or_else(|| too_deep(case, bench))
         .or_else(|| missing_need(case, device, dictionary, bench))
         .or_else(|| rtu_alone(case, bench))
+        .or_else(|| missing_connections(case, device))
         .or_else(|| no_parity(case, device, bench))
         .or_else(|| no_characters(case, bench))
         .or_else(|| no_silences(case, bench))
@@ -190,6 +191,40 @@ fn rtu_alone(case: &Case, bench: &Bench) -> Option<String> {
     steps
         .chain(&case.restore.steps)
         .find_map(|step| rtu_step(&step.value, bench))
+}
+
+/// More connections are open at once, with that of the bench, than the device serves.
+fn missing_connections(case: &Case, device: &DeviceDescription) -> Option<String> {
+    let (mut open, mut most) = (0, 0);
+    let steps: Vec<&Located<Step>> = case.control.iter().chain(&case.steps).collect();
+    count_connections(&steps, &mut open, &mut most);
+    let needed = most + 1;
+    let served = device.modbus.as_ref().and_then(|it| it.connections);
+    match served {
+        _ if most == 0 => None,
+        None => {
+            Some("the description does not say how many connections the device serves".to_owned())
+        }
+        Some(served) if served < needed => Some(format!(
+            "the device serves {served} connections, and {needed} are needed"
+        )),
+        Some(_) => None,
+    }
+}
+
+fn count_connections(steps: &[&Located<Step>], open: &mut u16, most: &mut u16) {
+    for step in steps {
+        match &step.value {
+            Step::Connect(_) => *open += 1,
+            Step::Disconnect(_) => *open = open.saturating_sub(1),
+            Step::Repeat(repeat) => {
+                let inside: Vec<&Located<Step>> = repeat.steps.iter().collect();
+                count_connections(&inside, open, most);
+            }
+            _ => {}
+        }
+        *most = (*most).max(*open);
+    }
 }
 
 /// A parity bit is sent wrong where there is none.

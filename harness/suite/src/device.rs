@@ -109,6 +109,9 @@ pub struct ModbusDescription {
     /// nothing is known.
     #[serde(default)]
     pub functions: Vec<FunctionCode>,
+    /// How many connections of Modbus TCP it serves at once. Where nothing is said, nothing is known.
+    #[serde(default)]
+    pub connections: Option<u16>,
 }
 
 impl ModbusDescription {

@@ -141,6 +141,9 @@ fn plain_device(feature: Feature) -> DeviceDescription {
     device.device = "plain".into();
     device.deviates.clear();
     device.features = [feature].into_iter().collect();
+    if let Some(modbus) = &mut device.modbus {
+        modbus.connections = Some(16);
+    }
     device
 }
 

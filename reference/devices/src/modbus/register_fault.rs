@@ -119,7 +119,9 @@ impl RegisterFault {
             RegisterFaultKind::Missing => register.access.readable(),
             RegisterFaultKind::Surplus => false,
             RegisterFaultKind::WrongDefault => {
-                register.default.is_some() && register.access.readable() && is_word
+                let effects = register.effects.as_ref();
+                let stays = effects.is_some_and(|it| !it.contains(&WriteEffect::Readdresses));
+                register.default.is_some() && register.access.readable() && stays && is_word
             }
             RegisterFaultKind::Writable => register.access == Access::ReadOnly && is_word,
             RegisterFaultKind::ReadOnly | RegisterFaultKind::NotWritten => {
