@@ -1,13 +1,15 @@
 //! The tester's view of a lane while a case is played: what was sent, what came and was not yet expected.
 
+mod connections;
+
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use fieldproof_can::Frame;
 use fieldproof_link::{
-    Arrival, Character, Farewell, Framing, Instant, Lane, Line, Origin, PortIndex, Reception, Sent,
-    SerialSettings, Transmission,
+    Arrival, Character, Instant, Lane, Line, Origin, PortIndex, Reception, Sent, SerialSettings,
+    Transmission,
 };
 use fieldproof_record::{BusErrorEvent, Direction, Event, FrameEvent, SerialEvent, Sink};
 
@@ -113,59 +115,6 @@ impl<'a> Session<'a> {
             connections: Vec::new(),
             lasting,
         }
-    }
-
-    /// The first port that is Modbus TCP.
-    pub(crate) fn tcp_port(&self) -> Option<PortIndex> {
-        let mut ports = self.lane.ports().iter();
-        ports
-            .position(|port| port.line == Line::Stream(Framing::ModbusTcp))
-            .map(PortIndex)
-    }
-
-    /// Opens a further connection to where `port` leads.
-    pub(crate) fn connect(&mut self, port: PortIndex, name: &str) -> Result<(), Stop> {
-        let connection = self.lane.connect(port, name)?;
-        let now = self.lane.now();
-        let place = connection.0;
-        let properties = self.lane.ports().get(place);
-        let assembler = properties.and_then(|it| Assembler::new(it.line, it.has_bit_times()));
-        if place >= self.assemblers.len() {
-            self.assemblers.resize_with(place + 1, || None);
-            self.last_activity.resize(place + 1, now);
-        }
-        self.assemblers[place] = assembler;
-        self.connections.push((connection, port));
-        self.mark_sent();
-        Ok(())
-    }
-
-    /// Ends a connection that the case has opened.
-    pub(crate) fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), Stop> {
-        self.lane.disconnect(port, how)?;
-        self.connections
-            .retain(|(connection, _)| *connection != port);
-        self.inbox.retain(|received| received.port != port);
-        Ok(())
-    }
-
-    /// Ends all of them.
-    pub(crate) fn disconnect_all(&mut self) -> Result<(), Stop> {
-        while let Some((connection, _)) = self.connections.last().copied() {
-            self.disconnect(connection, Farewell::Close)?;
-        }
-        Ok(())
-    }
-
-    /// Whether `port` is a connection that the case has opened.
-    pub(crate) fn is_connection(&self, port: PortIndex) -> bool {
-        self.connections.iter().any(|(it, _)| *it == port)
-    }
-
-    /// What stands in the record: of a connection, the port that it leads to.
-    fn recorded_port(&self, port: PortIndex) -> u8 {
-        let led = self.connections.iter().find(|(it, _)| *it == port);
-        led.map_or(port, |(_, port)| *port).0 as u8
     }
 
     pub(crate) fn now(&self) -> Instant {

@@ -4,7 +4,9 @@ use std::time::Duration;
 
 use fieldproof_can::BytePattern;
 use fieldproof_link::{Character, Farewell, Parity, PortIndex, SerialSettings};
-use fieldproof_suite::model::{Crc, Disconnect, ExpectBytes, OtherBytes, PauseLength, SendBytes};
+use fieldproof_suite::model::{
+    Crc, Disconnect, ExpectBytes, OtherBytes, Pause, PauseLength, SendBytes,
+};
 use fieldproof_wire::modbus::crc16_bytes;
 
 use crate::limits::show;
@@ -29,6 +31,15 @@ impl Tester<'_> {
             self.session.send_characters(port, characters, None)?;
             return Ok(());
         };
+        self.send_with_pauses(port, characters, pause)
+    }
+
+    fn send_with_pauses(
+        &mut self,
+        port: PortIndex,
+        characters: Vec<Character>,
+        pause: Pause,
+    ) -> Result<(), Stop> {
         let lasting = self.pause_length(port, pause.lasting)?;
         let mut rest = characters;
         let mut after = None;
