@@ -193,6 +193,8 @@ pub struct Behaviour {
     pub more_follows_missing: bool,
     /// Legal variant: whether a header of Modbus TCP that is none ends the connection.
     pub bad_header_closes: bool,
+    /// Legal variant: whether several requests of one packet are done from the last to the first.
+    pub last_request_first: bool,
     /// The register that is not as its map says.
     pub register_fault: Option<RegisterFault>,
     /// What else it does wrong.
@@ -252,6 +254,7 @@ impl Behaviour {
         unknown_object_answered: false,
         more_follows_missing: false,
         bad_header_closes: false,
+        last_request_first: false,
         register_fault: None,
         departure: None,
         tcp_fault: None,

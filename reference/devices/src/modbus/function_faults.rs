@@ -39,7 +39,7 @@ faults! {
         "goes on with a frame for 20 ms after it has stopped", departure = Some(Departure::PatientLine);
     "high-bit-ignored", "MODBUS application protocol V1.1b3, 4.1: function codes are 1 to 127",
         "does what the function without its highest bit asks", departure = Some(Departure::HighBitIgnored);
-    "request-echoed", "MODBUS over serial line V1.02, 2.4.1: a slave sends nothing but its answer",
+    "request-echoed", "MODBUS over serial line V1.02, 2.1: a slave sends nothing but its answer",
         "sends the request back before its answer", departure = Some(Departure::EchoesRequest);
     "answers-late", "the answer comes in the time that the device promises, or in a second",
         "answers after 1.2 s", processing_delay = Duration::from_millis(1_200);

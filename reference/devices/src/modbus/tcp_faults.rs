@@ -26,7 +26,7 @@ tcp_faults! {
         "leaves the unit out of the length of its answers", LengthWithoutUnit;
     "tcp-unit-replaced", "MODBUS messaging on TCP/IP V1.0b, 3.1.3: the answer repeats the unit identifier",
         "answers every unit as unit FFh", UnitReplaced;
-    "tcp-unit-0-unanswered", "MODBUS messaging on TCP/IP V1.0b, 4.4.2.1: unit 0 addresses a device at the end of a connection",
+    "tcp-unit-0-unanswered", "MODBUS messaging on TCP/IP V1.0b, 4.4: unit 0 addresses a device at the end of a connection",
         "takes unit 0 for a broadcast", UnitZeroUnanswered;
     "tcp-other-protocols", "MODBUS messaging on TCP/IP V1.0b, 3.1.3: the protocol identifier of Modbus is 0",
         "answers requests with another protocol identifier", OtherProtocols;
@@ -34,25 +34,23 @@ tcp_faults! {
         "takes a request to end where its function says, whatever the length is", LengthIgnored;
     "tcp-piece-is-request", "MODBUS messaging on TCP/IP V1.0b, 3.1.3: a frame may come in several packets",
         "forgets the beginning of a request whose rest comes in another packet", PieceIsRequest;
-    "tcp-first-of-piece", "MODBUS messaging on TCP/IP V1.0b, 4.4.1.2: several requests may be on the way at once",
+    "tcp-first-of-piece", "MODBUS messaging on TCP/IP V1.0b, 4.4: several requests may be on the way at once",
         "answers the first of several requests in one packet, and forgets the others", FirstOfPiece;
-    "tcp-last-first", "MODBUS messaging on TCP/IP V1.0b, 4.4.1.2: requests are done in the order in which they come",
-        "does several requests of one packet from the last to the first", LastFirst;
-    "tcp-half-blocks", "MODBUS messaging on TCP/IP V1.0b, 4.3.1: connections are served independently of each other",
+    "tcp-half-blocks", "MODBUS messaging on TCP/IP V1.0b, 4.2: connections are served independently of each other",
         "answers nobody while half a request lies on one connection", HalfBlocks;
-    "tcp-newest-only", "MODBUS messaging on TCP/IP V1.0b, 4.3.1: connections are served independently of each other",
+    "tcp-newest-only", "MODBUS messaging on TCP/IP V1.0b, 4.2: connections are served independently of each other",
         "goes silent on a connection once there is a newer one", NewestOnly;
-    "tcp-never-freed", "MODBUS messaging on TCP/IP V1.0b, 4.3.1: a connection that is closed is free for another",
+    "tcp-never-freed", "MODBUS messaging on TCP/IP V1.0b, 4.2: a connection that is closed is free for another",
         "serves eight connections, and after that none, though all were closed", NeverFreed;
     "tcp-remains-kept", "MODBUS messaging on TCP/IP V1.0b, 3.1.3: a frame begins with its header",
         "puts half a request of a closed connection before what comes over the next", RemainsKept;
-    "tcp-stuck-after-garbage", "MODBUS messaging on TCP/IP V1.0b, 4.4.2: a frame that is not of Modbus is discarded",
+    "tcp-stuck-after-garbage", "MODBUS messaging on TCP/IP V1.0b, 4.4: a frame that is not of Modbus is discarded",
         "answers nobody any more after a header that is none", StuckAfterGarbage;
-    "tcp-flood-stops", "MODBUS messaging on TCP/IP V1.0b, 4.4.2: a frame that is not of Modbus is discarded",
+    "tcp-flood-stops", "MODBUS messaging on TCP/IP V1.0b, 4.4: a frame that is not of Modbus is discarded",
         "answers nobody any more after 512 bytes that are no frame", FloodStops;
-    "tcp-gone-stops", "MODBUS messaging on TCP/IP V1.0b, 4.3.1: connections are served independently of each other",
+    "tcp-gone-stops", "MODBUS messaging on TCP/IP V1.0b, 4.2: connections are served independently of each other",
         "answers nobody any more once a client has gone before its answer", GoneStops;
-    "tcp-ends-after-many", "MODBUS messaging on TCP/IP V1.0b, 4.3.1: a connection is kept open, and not opened for each request",
+    "tcp-ends-after-many", "MODBUS messaging on TCP/IP V1.0b, 4.2: a connection is kept open, and not opened for each request",
         "ends a connection after 32 requests", EndsAfterMany;
     "tcp-short-buffer", "MODBUS application protocol V1.1b3, 4.1: a frame on TCP has up to 260 bytes",
         "does not answer requests of more than 256 bytes", ShortBuffer;

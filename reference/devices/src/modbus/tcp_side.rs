@@ -43,8 +43,6 @@ pub enum TcpFault {
     PieceIsRequest,
     /// Of several requests in one piece only the first is done.
     FirstOfPiece,
-    /// Several requests in one piece are done from the last to the first.
-    LastFirst,
     /// While half a request lies on one connection, the others wait.
     HalfBlocks,
     /// A new connection silences those before it.
@@ -185,17 +183,18 @@ impl TcpSide {
                     self.to_close.push(port);
                     return;
                 }
-                self.whole(now, port, frame, fault);
+                self.whole(now, port, frame, behaviour);
             }
         }
     }
 
-    fn whole(&mut self, now: Instant, port: usize, frame: Vec<u8>, fault: Option<TcpFault>) {
+    fn whole(&mut self, now: Instant, port: usize, frame: Vec<u8>, behaviour: &Behaviour) {
+        let (fault, last_first) = (behaviour.tcp_fault, behaviour.last_request_first);
         let of_one_piece = self.last_whole.replace(now) == Some(now);
         match fault {
             Some(TcpFault::FirstOfPiece) if of_one_piece => {}
-            Some(TcpFault::LastFirst) if of_one_piece => self.waiting.push_front((port, frame)),
             Some(TcpFault::ShortBuffer) if frame.len() > SHORT_BUFFER => {}
+            _ if of_one_piece && last_first => self.waiting.push_front((port, frame)),
             _ => self.waiting.push_back((port, frame)),
         }
     }

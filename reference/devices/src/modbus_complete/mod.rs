@@ -40,6 +40,11 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             apply: |behaviour| behaviour.modbus.bad_header_closes = true,
         },
         Variant {
+            name: "last-request-first",
+            words: "does several requests of one packet from the last to the first: the transaction tells which is which",
+            apply: |behaviour| behaviour.modbus.last_request_first = true,
+        },
+        Variant {
             name: "busy-at-times",
             words: "takes up to 30 ms more for an answer than it took for the last",
             apply: |behaviour| {
