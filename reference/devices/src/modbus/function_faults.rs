@@ -12,6 +12,7 @@ macro_rules! faults {
             breaks: $breaks,
             words: $words,
             caught_by: "modbus",
+            named: &[],
             apply: |behaviour| behaviour.modbus.$field = $value,
         }),+];)+
     };
