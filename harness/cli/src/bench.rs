@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use fieldproof_devices::inverter::Inverter;
-use fieldproof_devices::{Medium, Settings, UnknownFault};
+use fieldproof_devices::neighbour::Neighbour;
+use fieldproof_devices::{Medium, PortKind, Settings, UnknownFault};
 use fieldproof_link::real::{NoStimuli, OpenError, RealLane, Stimuli};
 use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_link::{
@@ -13,10 +14,11 @@ use fieldproof_link::{
 };
 use fieldproof_run::Bench;
 use fieldproof_suite::bench::{self, LinkKind};
-use fieldproof_suite::device::{self, PortDescription};
+use fieldproof_suite::device::{self, DeviceDescription, PortDescription};
 use fieldproof_suite::model::{Depth, Effect, StimulusName};
 
 use crate::library::{Device, Place};
+use crate::line_trouble::LineTrouble;
 use crate::links;
 use crate::operator::{ByCommand, ByHand, Operator};
 
@@ -29,6 +31,8 @@ pub struct Behaviour {
     pub variant: Option<String>,
     /// The seed of its response times.
     pub seed: u64,
+    /// What is wrong with the line between it and the tester.
+    pub line: Option<LineTrouble>,
 }
 
 /// Why a device could not be connected.
@@ -70,7 +74,13 @@ pub(crate) fn open(
             let lane = open_real(device, place, behaviour.seed, operator)?;
             Ok(Box::new(lane))
         }
-        _ => Ok(Box::new(connect(device, behaviour)?)),
+        _ => {
+            let lane = Box::new(connect(device, behaviour)?);
+            Ok(match behaviour.line {
+                Some(trouble) => trouble.between(lane),
+                None => lane,
+            })
+        }
     }
 }
 
@@ -170,11 +180,27 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
         }
     }
     builder.device(participant, &ports);
+    if behaviour.line == Some(LineTrouble::Neighbour) {
+        for (kind, port) in kind.ports.iter().zip(&ports) {
+            if let Some(bit_rate) = can_bit_rate(description, kind) {
+                builder.participant(Box::new(Neighbour::new(bit_rate)), &[*port]);
+            }
+        }
+    }
     let mut lane = builder.build();
     for (port, companion) in companions {
         lane.attach(port, companion);
     }
     Ok(lane)
+}
+
+/// What its CAN port is set to as the device leaves the factory, or as the description says.
+fn can_bit_rate(description: &DeviceDescription, kind: &PortKind) -> Option<u32> {
+    match (description.ports.get(kind.role), kind.medium) {
+        (Some(PortDescription::Can { bit_rate }), _) => Some(*bit_rate),
+        (None, Medium::Can { bit_rate }) => Some(bit_rate),
+        _ => None,
+    }
 }
 
 /// The companions that a description can name.

@@ -10,6 +10,7 @@ mod exit;
 mod glob;
 mod input;
 mod library;
+mod line_trouble;
 mod links;
 mod object_faults;
 mod operator;

@@ -3,14 +3,17 @@
 use std::time::Duration;
 
 use fieldproof_link::{Framing, Line, PortIndex};
-use fieldproof_record::Limits;
+use fieldproof_record::{Direction, Limits, SerialEvent};
+use fieldproof_wire::describe::{
+    Direction as ModbusDirection, describe_modbus, describe_modbus_tcp,
+};
 use fieldproof_wire::modbus::{crc16, crc16_bytes};
 
 use crate::limits::{nanoseconds, show};
 use crate::modbus_tcp;
-use crate::session::{Message, Received};
+use crate::session::{Message, Received, Traffic};
 use crate::stop::{Came, Stop};
-use crate::tester::Tester;
+use crate::tester::{SERIAL, Tester};
 
 /// An answer by the rules of the line: right CRC or header, no spoilt character, not before its time.
 #[derive(Debug)]
@@ -58,6 +61,46 @@ impl Tester<'_> {
         match &received.message {
             Message::Serial { bytes, .. } => Ok(Some((bytes.clone(), received.clone()))),
             Message::Can(_) => Ok(None),
+        }
+    }
+
+    /// Says what the request was that a failure is about, and what came after it.
+    pub(crate) fn with_exchange(&self, mut stop: Stop) -> Stop {
+        let (Stop::Mismatch(mismatch) | Stop::Undecided(mismatch)) = &mut stop else {
+            return stop;
+        };
+        if self.main_role != SERIAL {
+            return stop;
+        }
+        let serial = self.session.trace().filter_map(|traffic| match traffic {
+            Traffic::Serial(event) => Some(event),
+            Traffic::Can(_) => None,
+        });
+        let serial: Vec<_> = serial.collect();
+        let Some(sent) = serial
+            .iter()
+            .rposition(|event| event.direction == Direction::Sent)
+        else {
+            return stop;
+        };
+        let described: Vec<String> = serial
+            .iter()
+            .skip(sent)
+            .take(2)
+            .map(|event| self.describe_serial(event))
+            .collect();
+        mismatch.what = format!("{}: {}", mismatch.what, described.join("; "));
+        stop
+    }
+
+    fn describe_serial(&self, event: &SerialEvent) -> String {
+        let direction = match event.direction {
+            Direction::Sent => ModbusDirection::Request,
+            Direction::Received | Direction::Companion => ModbusDirection::Response,
+        };
+        match self.session.line(PortIndex(event.port.into())) {
+            Line::Stream(Framing::ModbusTcp) => describe_modbus_tcp(&event.bytes, direction),
+            _ => describe_modbus(&event.bytes, direction),
         }
     }
 

@@ -51,6 +51,8 @@ pub(crate) struct Tester<'a> {
     pub(crate) sync_period: Option<Duration>,
     /// The case says itself how what it changes is put back.
     pub(crate) restores_by_steps: bool,
+    /// The last request to an SDO server.
+    pub(crate) sdo_request: Option<Frame>,
     /// The object of a segmented or block transfer that has not ended.
     pub(crate) open_transfer: Option<Multiplexer>,
     /// Whether a step of the case itself, not only of its control, has begun.

@@ -175,7 +175,10 @@ const fn nmt_state(code: u8) -> Option<NmtState> {
 
 fn unexpected(kind: &str, came: &str, what: Came) -> Stop {
     Stop::mismatch(
-        format!("an unexpected {kind} came"),
+        match &what {
+            Came::Frame(frame) => format!("an unexpected {kind} came: {}", describe_frame(frame)),
+            _ => format!("an unexpected {kind} came"),
+        },
         "nothing more",
         came,
         what,

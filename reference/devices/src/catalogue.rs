@@ -77,6 +77,8 @@ pub struct Fault {
     pub breaks: &'static str,
     /// What one sees, in the words of a bug report.
     pub words: &'static str,
+    /// What the first line of a failure names, one of these: the object, state or field that is wrong.
+    pub named: &'static [&'static str],
     /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
     /// `sync`, `time`, `store`, `emergency`, `cob-id`, `robustness`, `gateway`, `cia402`, `cia406`.
     pub caught_by: &'static str,

@@ -25,7 +25,10 @@ impl Tester<'_> {
         match step {
             Step::Send(step) => self.send(step),
             Step::Expect(step) => self.expect(step),
-            Step::ExpectSilence(step) => self.expect_silence(step),
+            Step::ExpectSilence(step) => {
+                let silent = self.expect_silence(step);
+                silent.map_err(|stop| self.with_exchange(stop))
+            }
             Step::Nmt(step) => self.nmt(step),
             Step::NmtEnter(state) => self.nmt_enter(*state),
             Step::ExpectState(step) => self.expect_state(step),
@@ -41,9 +44,12 @@ impl Tester<'_> {
             Step::SdoWrite(step) => self.sdo_write(step),
             Step::DriveEnter(target) => self.drive_enter(*target),
             Step::ExpectDrive(step) => self.expect_drive(step),
-            Step::Modbus(step) => self.modbus(step),
+            Step::Modbus(step) => self.modbus(step).map_err(|stop| self.with_exchange(stop)),
             Step::SendBytes(step) => self.send_raw_bytes(step),
-            Step::ExpectBytes(step) => self.expect_bytes(step),
+            Step::ExpectBytes(step) => {
+                let came = self.expect_bytes(step);
+                came.map_err(|stop| self.with_exchange(stop))
+            }
             Step::Connect(step) => self.connect(&step.name),
             Step::Disconnect(step) => self.disconnect(step),
             Step::Stimulate(step) => self.stimulate(step),

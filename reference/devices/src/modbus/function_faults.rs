@@ -14,6 +14,7 @@ macro_rules! faults {
             breaks: $breaks,
             words: $words,
             caught_by: "modbus",
+            named: &[],
             apply: |behaviour| behaviour.modbus.$field = $value,
         }),+];)+
     };

@@ -100,7 +100,7 @@ impl RegisterFault {
     }
 
     /// Its register.
-    pub(super) const fn address(self) -> u16 {
+    pub const fn address(self) -> u16 {
         self.address
     }
 
