@@ -161,7 +161,9 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
                 stop_bits,
                 ..
             }) => builder.serial_line(port.role, serial(*baud, *parity, *stop_bits)),
+            Some(PortDescription::Tcp { .. }) => builder.connection(port.role, Framing::ModbusTcp),
             None => match port.medium {
+                Medium::Tcp => builder.connection(port.role, Framing::ModbusTcp),
                 Medium::Can { bit_rate } => builder.can_bus(port.role, bit_rate),
                 Medium::Serial(settings) => builder.serial_line(port.role, settings),
             },
@@ -234,6 +236,7 @@ pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>
     Bench {
         fixed_rates: roles(|port| !port.sets_bit_rate),
         modbus_tcp: roles(|port| port.line == Line::Stream(Framing::ModbusTcp)),
+        streams: roles(|port| matches!(port.line, Line::Stream(_))),
         ..bench_of(device, ports, lane.offers().into_iter().collect(), permits)
     }
 }
@@ -270,13 +273,23 @@ fn bench_of(
         }
     }
     let description = &device.description;
-    let links = device.place.iter().flat_map(|place| &place.links);
-    let over_tcp = links.filter(|(_, link)| {
+    let links = || device.place.iter().flat_map(|place| &place.links);
+    let links_over_tcp = links()
+        .filter(|(_, link)| link.kind == LinkKind::Tcp)
+        .map(|(role, _)| role.clone())
+        .collect();
+    let over_tcp = links().filter(|(_, link)| {
         link.kind == LinkKind::Tcp && link.parameters.framing != Some(bench::Framing::Rtu)
     });
+    let over_tcp = over_tcp.map(|(role, _)| role);
+    let described = description.ports.iter();
+    let described = described.filter(|(_, port)| matches!(port, PortDescription::Tcp { .. }));
+    let described = described.map(|(role, _)| role);
+    let described = described.filter(|role| ports.contains(*role));
     Bench {
-        modbus_tcp: over_tcp.map(|(role, _)| role.clone()).collect(),
+        modbus_tcp: over_tcp.chain(described).cloned().collect(),
         ports,
+        streams: links_over_tcp,
         fixed_rates: BTreeSet::new(),
         stimuli,
         permits,

@@ -183,6 +183,8 @@ impl NamedTrouble {
         kind.ports.iter().any(|port| match port.medium {
             Medium::Can { .. } => self.on != On::Serial,
             Medium::Serial(_) => self.on != On::Can,
+            // What arrives on a connection is whole.
+            Medium::Tcp => self.on == On::Both,
         })
     }
 }

@@ -187,9 +187,9 @@ fn proof_holds_for_a_fault_that_is_caught() {
     assert_eq!(proof["holds"], true);
     let caught = proof["rounds"].as_array().unwrap().last().unwrap();
     assert_eq!(caught["guise"]["name"], "stale-crc-accepted");
-    assert_eq!(
-        caught["failed"].as_object().unwrap().keys().next().unwrap(),
-        "modbus.crc/spoilt-bit"
+    assert!(
+        caught["failed"].get("modbus.crc/spoilt-bit").is_some(),
+        "{caught:?}"
     );
     assert_eq!(folder.files(), Vec::<String>::new());
 }

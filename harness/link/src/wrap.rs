@@ -8,9 +8,9 @@ use std::time::Duration;
 use fieldproof_can::{Frame, Id};
 
 use crate::{
-    Arrival, BusError, Character, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered,
-    Origin, Parity, Participant, PortIndex, PortProperties, Reception, Sent, State, Stimulus,
-    StimulusError, StimulusKind, Transmission,
+    Arrival, BusError, Character, CompanionIndex, Farewell, Instant, Lane, Line, LinkError,
+    NotOffered, Origin, Parity, Participant, PortIndex, PortProperties, Reception, Sent, State,
+    Stimulus, StimulusError, StimulusKind, Transmission,
 };
 
 /// What a bad line does. Every fault strikes every so manieth frame or character; 1 is all of them.
@@ -170,6 +170,7 @@ impl FaultyLine {
                 };
                 Transmission::Characters(characters.into_iter().map(other).collect())
             }
+            Transmission::Close => Transmission::Close,
         }
     }
 
@@ -249,6 +250,14 @@ impl Lane for FaultyLine {
 
     fn detach(&mut self, companion: CompanionIndex) {
         self.lane.detach(companion);
+    }
+
+    fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
+        self.lane.connect(port, name)
+    }
+
+    fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
+        self.lane.disconnect(port, how)
     }
 
     fn device_state(&self) -> State {

@@ -50,7 +50,8 @@ fn line(session: &Session<'_>, dictionary: Option<&Dictionary>, traffic: &Traffi
                 Direction::Sent => true,
                 Direction::Companion => false,
                 Direction::Received => {
-                    session.port_name(PortIndex(event.port.into())) != crate::tester::SERIAL
+                    let name = session.port_name(PortIndex(event.port.into()));
+                    name != crate::tester::SERIAL && name != crate::tester::TCP
                 }
             };
             let direction = if from_master {

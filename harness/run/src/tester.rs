@@ -20,6 +20,7 @@ use crate::value::Saved;
 /// The port roles of suites.
 pub(crate) const CAN: &str = "can";
 pub(crate) const SERIAL: &str = "serial";
+pub(crate) const TCP: &str = "tcp";
 
 /// Every CANopen device has it, and reading it changes nothing.
 pub(crate) const DEVICE_TYPE: Multiplexer = Multiplexer::new(0x1000, 0);
@@ -73,6 +74,14 @@ impl Tester<'_> {
         self.session
             .port(role)
             .ok_or_else(|| Stop::Bench(format!("this bench has no port {role:?}")))
+    }
+
+    /// The port that Modbus is spoken on: the serial one, or else that of Modbus TCP.
+    pub(crate) fn modbus_port(&self) -> Result<PortIndex, Stop> {
+        match self.session.port(SERIAL) {
+            Some(port) => Ok(port),
+            None => self.port(TCP),
+        }
     }
 
     pub(crate) fn node_id(&self) -> Result<NodeId, Stop> {

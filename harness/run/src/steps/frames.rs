@@ -181,7 +181,10 @@ impl Tester<'_> {
 
     /// The port that a suite means when it names none: CAN, or else serial.
     pub(crate) fn main_port(&self) -> Result<PortIndex, Stop> {
-        self.port(self.main_role)
+        match self.main_role {
+            SERIAL => self.modbus_port(),
+            role => self.port(role),
+        }
     }
 }
 

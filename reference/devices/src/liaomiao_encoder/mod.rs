@@ -58,6 +58,7 @@ const OWN_FAULTS: &[Fault] = &[
     modbus::faults::SPEED_SIGN_LOST,
     modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
     modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
+    modbus::faults::ADDRESS_TEXT_IGNORED,
 ];
 const ENCODER_FAULTS: &[Fault] = behaviour::FAULTS;
 const FAULTS: &[&[Fault]] = &[
@@ -65,6 +66,8 @@ const FAULTS: &[&[Fault]] = &[
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     modbus::faults::COMMON,
+    modbus::faults::LINE,
+    modbus::faults::WRITES,
     OWN_FAULTS,
     lss_faults::EVERY,
     ENCODER_FAULTS,

@@ -1,7 +1,9 @@
 //! The faults that a Modbus side can be given, each one departure from one clause.
 
-use super::function_faults::{FUNCTIONS, LINE, REFUSALS};
-use super::{AddressChangeReply, ByteCount, CrcOrder, EchoedValue, SpeedSign};
+use super::function_faults::{FUNCTIONS, PARITY, REFUSALS};
+pub(crate) use super::function_faults::{LINE, WRITES};
+use super::tcp_faults::TCP;
+use super::{AddressChangeReply, ByteCount, CrcOrder, Departure, EchoedValue, SpeedSign};
 use crate::Fault;
 
 /// The CRC of an answer, its bytes in the wrong order.
@@ -147,6 +149,16 @@ pub const ADDRESS_CHANGE_ANSWERED_FROM_OLD: Fault = Fault {
     apply: |behaviour| behaviour.modbus.address_change_reply = AddressChangeReply::FromOld,
 };
 
+/// Encoder only: any five bytes will do.
+pub const ADDRESS_TEXT_IGNORED: Fault = Fault {
+    name: "address-text-ignored",
+    breaks: "Liaomiao encoder manual, Modbus-RTU operation 3: the text `addr:` stands before the new address",
+    words: "takes a new address whatever text stands before it",
+    caught_by: "modbus",
+    named: &[],
+    apply: |behaviour| behaviour.modbus.departure = Some(Departure::AddressTextIgnored),
+};
+
 /// Encoder only: a turn one way looks like a turn the other way.
 pub const SPEED_SIGN_LOST: Fault = Fault {
     name: "speed-sign-lost",
@@ -172,12 +184,21 @@ pub const FAULTS: &[Fault] = &[
     WRITE_MULTIPLE_FORGETS,
     ADDRESS_CHANGE_NOT_ANSWERED,
     ADDRESS_CHANGE_ANSWERED_FROM_OLD,
+    ADDRESS_TEXT_IGNORED,
     SPEED_SIGN_LOST,
 ];
 
 /// What a slave can have that has every function.
-pub(crate) const COMPLETE: &[&[Fault]] =
-    &[COMMON, &[WRITE_MULTIPLE_FORGETS], LINE, REFUSALS, FUNCTIONS];
+pub(crate) const COMPLETE: &[&[Fault]] = &[
+    COMMON,
+    &[WRITE_MULTIPLE_FORGETS],
+    LINE,
+    WRITES,
+    PARITY,
+    REFUSALS,
+    FUNCTIONS,
+    TCP,
+];
 
 /// What every Modbus slave here can have.
 pub(crate) const COMMON: &[Fault] = &[

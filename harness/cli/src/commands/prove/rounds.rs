@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use fieldproof_devices::Fault;
-use fieldproof_devices::canopen::ObjectFault;
 use serde::Serialize;
 
 use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::library::{Device, Library};
 use crate::line_trouble::{Must, TROUBLES};
+use crate::object_faults::ValueFault;
 use crate::options::ProveOptions;
 use crate::player::Plan;
 use crate::{object_faults, select};
@@ -62,11 +62,17 @@ impl Claim {
         }
     }
 
-    fn of_object(fault: &ObjectFault) -> Claim {
+    fn of_value(fault: ValueFault) -> Claim {
+        let text = fault.to_string();
+        let address = text.split(':').nth(1).unwrap_or_default();
+        let caught_by = match fault {
+            ValueFault::Object(_) => "dictionary",
+            ValueFault::Register(_) => "registers",
+        };
         Claim {
             breaks: fault.kind().breaks(),
-            caught_by: "dictionary",
-            named: vec![format!("{:04X}h", fault.index())],
+            caught_by,
+            named: vec![format!("{address}h")],
         }
     }
 }
@@ -135,7 +141,7 @@ fn rounds_of(device: &Device, library: &Library, options: &ProveOptions) -> Vec<
     };
     let of_objects = of_objects
         .into_iter()
-        .map(|fault| (&whole, fault.to_string(), Claim::of_object(&fault)));
+        .map(|fault| (&whole, fault.to_string(), Claim::of_value(fault)));
     let faults = named.chain(of_objects).map(|(device, name, claim)| {
         let behaviour = Behaviour {
             fault: Some(name.clone()),
