@@ -182,7 +182,9 @@ impl NamedTrouble {
     pub(crate) fn fits(&self, kind: &DeviceKind) -> bool {
         kind.ports.iter().any(|port| match port.medium {
             Medium::Can { .. } => self.on != On::Serial,
-            Medium::Serial(_) | Medium::Tcp => self.on != On::Can,
+            Medium::Serial(_) => self.on != On::Can,
+            // What arrives on a connection is whole.
+            Medium::Tcp => self.on == On::Both,
         })
     }
 }

@@ -187,8 +187,10 @@ fn proof_holds_for_a_fault_that_is_caught() {
     assert_eq!(proof["holds"], true);
     let caught = proof["rounds"].as_array().unwrap().last().unwrap();
     assert_eq!(caught["guise"]["name"], "stale-crc-accepted");
-    let failed = caught["failed"].as_object().unwrap();
-    assert!(failed.contains_key("modbus.crc/spoilt-bit"), "{failed:?}");
+    assert!(
+        caught["failed"].get("modbus.crc/spoilt-bit").is_some(),
+        "{caught:?}"
+    );
     assert_eq!(folder.files(), Vec::<String>::new());
 }
 

@@ -63,14 +63,16 @@ impl Claim {
     }
 
     fn of_value(fault: ValueFault) -> Claim {
-        let (caught_by, address) = match fault {
-            ValueFault::Object(fault) => ("dictionary", fault.index()),
-            ValueFault::Register(fault) => ("registers", fault.address()),
+        let text = fault.to_string();
+        let address = text.split(':').nth(1).unwrap_or_default();
+        let caught_by = match fault {
+            ValueFault::Object(_) => "dictionary",
+            ValueFault::Register(_) => "registers",
         };
         Claim {
             breaks: fault.kind().breaks(),
             caught_by,
-            named: vec![format!("{address:04X}h")],
+            named: vec![format!("{address}h")],
         }
     }
 }
