@@ -9,6 +9,7 @@ mod embedded;
 mod exit;
 mod glob;
 mod input;
+mod journal;
 mod library;
 mod links;
 mod object_faults;
@@ -30,8 +31,8 @@ pub use library::{Device, Library, Place};
 pub use operator::Operator;
 pub use options::{
     AddressList, BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName,
-    Format, ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, ScanOptions,
-    SchemaKind, Selection, ServeOptions, StimulateOptions,
+    Format, KeyValue, ListOptions, NewDeviceOptions, Options, ProveOptions, ReportOptions,
+    RunOptions, ScanOptions, SchemaKind, Selection, ServeOptions, StimulateOptions,
 };
 pub use player::{Plan, play};
 
@@ -42,6 +43,7 @@ pub fn main(options: &Options) -> Exit {
     let mut screen = Screen::new(options.color);
     let done = match &options.command {
         Command::Run(options) => commands::run::run(options, &mut screen),
+        Command::Report(options) => commands::report::report(options, &mut screen),
         Command::List(options) => commands::list::list(options, &mut screen),
         Command::Check(options) => commands::check::check(options, &mut screen),
         Command::Eds {

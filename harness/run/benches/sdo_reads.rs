@@ -83,6 +83,7 @@ fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,

@@ -282,6 +282,7 @@ impl<'a> Session<'a> {
             direction: Direction::Sent,
             bytes: bytes.to_vec(),
             spoilt: false,
+            decoded: None,
         });
         Ok(sent)
     }
@@ -459,6 +460,7 @@ impl<'a> Session<'a> {
             direction,
             bytes: frame.bytes.clone(),
             spoilt: frame.spoilt,
+            decoded: None,
         });
         Received {
             at: frame.end,
@@ -490,8 +492,9 @@ impl<'a> Session<'a> {
             remote: frame.is_remote(),
             len: frame.len() as u8,
             data,
+            decoded: None,
         };
-        self.remember(Traffic::Can(event));
+        self.remember(Traffic::Can(event.clone()));
         self.sink.emit(Event::Frame(event));
     }
 

@@ -212,6 +212,7 @@ fn engine(address: SocketAddr, suites: &[Suite]) -> Duration {
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,

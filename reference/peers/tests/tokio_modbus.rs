@@ -280,6 +280,7 @@ fn play_on(port: Box<dyn Port>, device: DeviceDescription, chapters: &[&str]) ->
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,

@@ -8,6 +8,7 @@ pub(crate) mod export;
 pub(crate) mod list;
 pub(crate) mod new_device;
 pub(crate) mod prove;
+pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod scan;
 pub(crate) mod schema;

@@ -1,5 +1,6 @@
 //! `fieldproof run`
 
+mod head;
 mod lanes;
 mod preview;
 
@@ -13,14 +14,14 @@ use serde::Serialize;
 use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::exit::Exit;
+use crate::journal::RunJournal;
 use crate::library::{Device, Library};
 use crate::operator::Operator;
 use crate::options::{EFFECTS, Format, RunOptions};
 use crate::player::Plan;
 use crate::progress::Progress;
-use crate::reports::Reports;
 use crate::screen::{INK, Screen};
-use crate::{object_faults, select, stop};
+use crate::{object_faults, reports, select, stop};
 use lanes::Stage;
 
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
@@ -38,13 +39,17 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     select::must_be_simulated(&devices)?;
     let stop = stop::on_interrupt()?;
     let started = Instant::now();
-    let reports = Reports::open(&options.reports)?;
+    let start = head::run_started(&devices, &plan, options)?;
+    let journal = RunJournal::open(&options.reports, &start, stop)?;
+    reports::clear(&options.reports)?;
     let stage = stage(&devices, &plan, options, screen);
-    let lanes = lanes::play(&devices, &plan, &reports, &stage, stop);
+    let played = lanes::play(&devices, &plan, &journal, &stage, stop);
     let (summaries, screen) = stage.leave();
-    let written = lanes.and_then(|lanes| reports.junit(lanes));
+    let written = played
+        .and_then(|()| journal.finish(head::run_finished()))
+        .and_then(|()| reports::make(&options.reports));
     let exit = match &written {
-        Ok(()) => Exit::of_run(&summaries, options.strict),
+        Ok(_) => Exit::of_run(&summaries, options.strict),
         Err(complaint) => complaint.exit,
     };
     let outcome = RunOutcome {
@@ -62,7 +67,7 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
         options,
         screen,
     );
-    written.map(|()| exit)
+    written.map(|_| exit)
 }
 
 fn planned(devices: &[&Device], plan: &Plan) -> usize {
@@ -146,6 +151,7 @@ fn plan(options: &RunOptions) -> Plan {
         depth: options.depth.into(),
         strict: options.strict,
         inspects_device: true,
+        explains: true,
         behaviour: Behaviour {
             fault: options.fault.clone(),
             variant: options.variant.clone(),

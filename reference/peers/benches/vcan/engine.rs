@@ -97,6 +97,7 @@ fn play(interface: &str, read: &Read, times: u32) -> f64 {
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,
