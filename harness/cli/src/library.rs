@@ -98,8 +98,8 @@ impl Device {
     }
 
     /// The faults its reference device can have; nothing can be switched on in a real device.
-    pub fn faults(&self) -> &'static [Fault] {
-        self.simulated().map_or(&[], |kind| kind.faults)
+    pub fn faults(&self) -> impl Iterator<Item = &'static Fault> + use<> {
+        self.simulated().into_iter().flat_map(DeviceKind::faults)
     }
 
     /// The legal variants of its reference device; a real one is what it is.

@@ -33,7 +33,7 @@ fn everything_passes_on_every_device() {
         assert_eq!(start.lanes[index].device, lane["device"]);
         let of_lane =
             |entry: &&Entry| matches!(entry, Entry::Lane(lane, _) if *lane == index as u32);
-        let last = entries.iter().filter(of_lane).next_back();
+        let last = entries.iter().rfind(of_lane);
         assert!(matches!(last, Some(Entry::Lane(_, Event::LaneFinished(_)))));
     }
     assert!(matches!(entries.last(), Some(Entry::RunFinished(_))));
@@ -261,7 +261,10 @@ fn devices_and_faults_are_listed_as_data() {
     let faults = list("faults");
     assert_eq!(
         faults.len(),
-        kinds.iter().map(|kind| kind.faults.len()).sum::<usize>()
+        kinds
+            .iter()
+            .map(|kind| kind.faults().count())
+            .sum::<usize>()
     );
     assert!(
         faults

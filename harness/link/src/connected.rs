@@ -1,9 +1,8 @@
 //! A participant of which only some ports are connected.
 
-use std::collections::BTreeMap;
-
 use crate::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 /// A participant of which only some ports are connected. What it sends on the others is heard by nobody.
@@ -71,7 +70,7 @@ impl Participant for Connected {
         self.participant.offers()
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.participant.state()
     }
 }

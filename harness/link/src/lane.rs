@@ -1,10 +1,9 @@
 //! The lane: one device under test with all its ports, as the engine sees it.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use crate::{
-    Instant, Line, NotOffered, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Participant, Reception, State, Stimulus, StimulusKind, Transmission,
 };
 
 /// Which of the lane's ports, by its place in [`Lane::ports`].
@@ -176,7 +175,7 @@ pub trait Lane {
     fn detach(&mut self, companion: CompanionIndex);
 
     /// What the device would show if it could be opened: see [`Participant::state`]. Empty where it cannot.
-    fn device_state(&self) -> BTreeMap<String, String> {
-        BTreeMap::new()
+    fn device_state(&self) -> State {
+        State::default()
     }
 }

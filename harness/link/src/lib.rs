@@ -16,6 +16,7 @@ mod participant;
 pub mod real;
 mod signal;
 pub mod sim;
+mod state;
 mod time;
 mod wrap;
 
@@ -30,5 +31,6 @@ pub use participant::{NotOffered, Outbox, Participant, Stimulus, StimulusKind};
 pub use signal::{
     Character, Framing, Line, Parity, Reception, SerialSettings, StopBits, Transmission,
 };
+pub use state::{State, StateDifference, StateName, StateValue};
 pub use time::Instant;
 pub use wrap::{FaultyLine, LineFault};

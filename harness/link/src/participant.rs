@@ -1,8 +1,6 @@
 //! What takes part in a bus beside the tester: reference devices and the tester's own helpers.
 
-use std::collections::BTreeMap;
-
-use crate::{Instant, Line, Reception, Transmission};
+use crate::{Instant, Line, Reception, State, Transmission};
 
 /// Something on one or more buses, driven from outside (sans-IO): it is told what arrives and what time it is, puts
 /// what it sends into the [`Outbox`], and says when it next wants to be woken.
@@ -44,8 +42,8 @@ pub trait Participant: Send {
 
     /// Everything about it that a case could have left changed, as names and values: dictionary, registers, address,
     /// NMT and LSS state, non-volatile memory. Not: measured values, counters that only ever grow.
-    fn state(&self) -> BTreeMap<String, String> {
-        BTreeMap::new()
+    fn state(&self) -> State {
+        State::default()
     }
 }
 

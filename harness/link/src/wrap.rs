@@ -1,13 +1,13 @@
 //! Lanes that stand before a lane.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
 use crate::{
     Arrival, Character, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Origin, Parity,
-    Participant, PortIndex, PortProperties, Reception, Sent, Stimulus, StimulusError, StimulusKind,
-    Transmission,
+    Participant, PortIndex, PortProperties, Reception, Sent, State, Stimulus, StimulusError,
+    StimulusKind, Transmission,
 };
 
 /// What a bad line does to what the tester hears.
@@ -148,7 +148,7 @@ impl<L: Lane> Lane for FaultyLine<L> {
         self.lane.detach(companion);
     }
 
-    fn device_state(&self) -> BTreeMap<String, String> {
+    fn device_state(&self) -> State {
         self.lane.device_state()
     }
 }

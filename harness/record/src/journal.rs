@@ -5,7 +5,7 @@ use std::io::{self, BufRead, Write};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::event::{Event, FrameEvent, Measurement, StepStarted};
+use crate::event::{Event, FrameEvent, Measurement, Sink, StepStarted};
 use crate::{FORMAT, RunFinished, RunStarted};
 
 /// Why a text is not a journal.
@@ -101,6 +101,45 @@ pub fn write_event(out: &mut impl Write, lane: u32, event: &Event) -> io::Result
     write!(out, "{{\"lane\":{lane},")?;
     serde_json::to_writer(WithoutFirst { out, first: true }, event)?;
     out.write_all(b"\n")
+}
+
+/// Writes the events of one lane as they come. What goes wrong is kept until [`Journal::finish`], and nothing is written
+/// after it.
+#[derive(Debug)]
+pub struct Journal<W: Write> {
+    out: W,
+    lane: u32,
+    failed: Option<io::Error>,
+}
+
+impl<W: Write> Journal<W> {
+    /// The lines of lane number `lane`, on `out`, which is best buffered.
+    pub fn new(out: W, lane: u32) -> Journal<W> {
+        Journal {
+            out,
+            lane,
+            failed: None,
+        }
+    }
+
+    /// Flushes, and gives the output back.
+    ///
+    /// # Errors
+    /// The first thing that went wrong.
+    pub fn finish(mut self) -> io::Result<W> {
+        match self.failed {
+            Some(error) => Err(error),
+            None => self.out.flush().map(|()| self.out),
+        }
+    }
+}
+
+impl<W: Write> Sink for Journal<W> {
+    fn emit(&mut self, event: Event) {
+        if self.failed.is_none() {
+            self.failed = write_event(&mut self.out, self.lane, &event).err();
+        }
+    }
 }
 
 /// Leaves out the first byte.

@@ -15,7 +15,7 @@ pub use event::{
     Observation, Place, PortInfo, PuttingBack, SerialEvent, Sink, StepStarted, StimulusEvent,
     SuiteFinished, SuiteStarted, WrittenStep,
 };
-pub use journal::{Entry, JournalError, JournalReader, read_journal, write_event};
+pub use journal::{Entry, Journal, JournalError, JournalReader, read_journal, write_event};
 pub use run::{PlannedLane, RunFinished, RunStarted, Setting, UsedFile};
 pub use verdict::{Verdict, VerdictCounts};
 

@@ -4,10 +4,10 @@
 
 use fieldproof_record::{
     CaseFinished, CaseStarted, Cite, Direction, Entry, Event, ExcerptLine, FORMAT, Failure,
-    FrameEvent, Identity, IdentityPart, JournalError, JournalReader, LaneFinished, LaneStarted,
-    Limits, Measurement, Note, Observation, Place, PlannedLane, PortInfo, PuttingBack, RunFinished,
-    RunStarted, SerialEvent, Setting, StepStarted, StimulusEvent, SuiteFinished, SuiteStarted,
-    UsedFile, Verdict, VerdictCounts, WrittenStep, journal_schema, read_journal,
+    FrameEvent, Identity, IdentityPart, Journal, JournalError, JournalReader, LaneFinished,
+    LaneStarted, Limits, Measurement, Note, Observation, Place, PlannedLane, PortInfo, PuttingBack,
+    RunFinished, RunStarted, SerialEvent, Setting, Sink, StepStarted, StimulusEvent, SuiteFinished,
+    SuiteStarted, UsedFile, Verdict, VerdictCounts, WrittenStep, journal_schema, read_journal,
 };
 use proptest::collection::vec;
 use proptest::option;
@@ -176,6 +176,23 @@ fn bytes_that_a_machine_left_behind_when_it_died_are_left_out() {
     let mut journal = written(&[start()]);
     journal.extend_from_slice(b"\0\0\0\0\n");
     assert_eq!(all(&journal).unwrap(), [start()]);
+}
+
+#[test]
+fn writer_that_fails_is_told_at_the_end() {
+    struct Full;
+    impl std::io::Write for Full {
+        fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+            Err(std::io::ErrorKind::StorageFull.into())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let mut journal = Journal::new(Full, 0);
+    journal.emit(Event::PuttingBack(PuttingBack { at_ns: 0 }));
+    let error = journal.finish().map(|_| ()).unwrap_err();
+    assert_eq!(error.kind(), std::io::ErrorKind::StorageFull);
 }
 
 fn text() -> impl Strategy<Value = String> {

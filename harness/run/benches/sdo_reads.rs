@@ -108,6 +108,6 @@ fn every_event_written_to_a_journal(bencher: Bencher) {
         let Ok(file) = tempfile::tempfile() else {
             panic!("no temporary file")
         };
-        play(&suites, &device, Journal::new(BufWriter::new(file)))
+        play(&suites, &device, Journal::new(BufWriter::new(file), 0))
     });
 }

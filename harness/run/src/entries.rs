@@ -1,8 +1,6 @@
 //! What goes into the record about lanes and cases.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use fieldproof_link::{Framing, Lane, Line, Parity, StopBits};
+use fieldproof_link::{Framing, Lane, Line, Parity, StateDifference, StopBits};
 use fieldproof_record::{
     CaseFinished, CaseStarted, Cite, Failure, LaneStarted, Place, PortInfo, Verdict, WrittenStep,
 };
@@ -79,34 +77,21 @@ pub(crate) fn refused(
 }
 
 /// What a look into the device showed: something is not as it was found.
-pub(crate) fn left_changed(
-    before: &BTreeMap<String, String>,
-    after: &BTreeMap<String, String>,
-    at_ns: u64,
-    place: Place,
-) -> Failure {
-    let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
-    let changed = names
-        .into_iter()
-        .filter(|name| before.get(*name) != after.get(*name));
-    let show = |state: &BTreeMap<String, String>, name: &String| {
-        format!(
-            "{name} = {}",
-            state.get(name).map_or("nothing", String::as_str)
-        )
+pub(crate) fn left_changed(differences: &[StateDifference], at_ns: u64, place: Place) -> Failure {
+    let show = |value: fn(&StateDifference) -> &Option<String>| {
+        let all = differences.iter().map(|it| {
+            let value = value(it).as_deref().unwrap_or("nothing");
+            format!("{} = {value}", it.name)
+        });
+        all.collect::<Vec<_>>().join(", ")
     };
-    let (mut expected, mut actual) = (Vec::new(), Vec::new());
-    for name in changed {
-        expected.push(show(before, name));
-        actual.push(show(after, name));
-    }
     Failure {
         verdict: Verdict::Error,
         place,
         at_ns,
         what: "the device is not as it was found".into(),
-        expected: expected.join(", "),
-        actual: actual.join(", "),
+        expected: show(|it| &it.before),
+        actual: show(|it| &it.after),
         notes: vec!["the case must put back what it changes, or say how under restore".into()],
     }
 }

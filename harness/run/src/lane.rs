@@ -1,11 +1,10 @@
 //! One lane: all cases that apply to one device, in order.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use fieldproof_dictionary::Dictionary;
-use fieldproof_link::Lane;
+use fieldproof_link::{Lane, State};
 use fieldproof_record::{
     CaseFinished, Event, LaneFinished, Place, Sink, SuiteFinished, SuiteStarted, Verdict,
     VerdictCounts,
@@ -18,8 +17,9 @@ use fieldproof_wire::canopen::NodeId;
 use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
 use crate::entries;
-use crate::node::NodeWatch;
+use crate::node::{HEARTBEAT, NodeWatch};
 use crate::relocate::relocate;
+use crate::sdo::Outcome;
 use crate::session::Session;
 use crate::steps::main_role;
 use crate::stop::Stop;
@@ -135,7 +135,7 @@ struct Player<'a> {
     as_found: Option<NmtState>,
     outcome: LaneOutcome,
     /// What the last look into the device showed.
-    last_state: Option<BTreeMap<String, String>>,
+    last_state: Option<State>,
 }
 
 impl<'a> Player<'a> {
@@ -216,6 +216,12 @@ impl<'a> Player<'a> {
             true => NmtState::Operational,
             false => NmtState::PreOperational,
         };
+        if tester.claims(Feature::HeartbeatProducer)
+            && let Ok(Outcome::Done(found)) =
+                tester.sdo_upload(HEARTBEAT, tester.device.timing.sdo_response)
+        {
+            tester.watch.found_heartbeat(found.of_size(Some(2)));
+        }
         tester.session.begin_case();
         let now = tester.session.now();
         tester.watch.found(state, now);
@@ -329,15 +335,13 @@ impl<'a> Player<'a> {
         };
         let mut outcome = self.tester.play_case(case, self.as_found, place);
         let after = self.tester.session.lane().device_state();
-        if before != after && outcome.stops_lane.is_none() {
+        let differences = before.differences(&after);
+        if !differences.is_empty() && outcome.stops_lane.is_none() {
             outcome.verdict = outcome.verdict.max(Verdict::Error);
             let at_ns = self.tester.session.now().as_nanos();
-            outcome.failures.push(entries::left_changed(
-                &before,
-                &after,
-                at_ns,
-                place(case.at),
-            ));
+            outcome
+                .failures
+                .push(entries::left_changed(&differences, at_ns, place(case.at)));
         }
         self.last_state = Some(after);
         outcome

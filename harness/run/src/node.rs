@@ -23,8 +23,12 @@ pub(crate) struct NodeWatch {
     heartbeat_ended_at: Option<Option<Instant>>,
     /// The period that was written to 1017h, if one was.
     pub(crate) heartbeat_period: Option<Duration>,
-    /// What 1017h holds after a reset.
+    /// What 1017h holds after a reset by the dictionary.
     heartbeat_by_default: bool,
+    /// Whether 1017h may hold something else after a reset, for it was found or saved so.
+    may_outlive_reset: bool,
+    /// Nobody knows whether it produces heartbeats.
+    unsure: bool,
     /// When it was asked for its state by guarding requests whose answers have not been expected yet.
     guarding_requests: Vec<Instant>,
 }
@@ -38,6 +42,8 @@ impl NodeWatch {
             heartbeat_ended_at: None,
             heartbeat_period: None,
             heartbeat_by_default,
+            may_outlive_reset: false,
+            unsure: false,
             guarding_requests: Vec::new(),
         }
     }
@@ -50,6 +56,12 @@ impl NodeWatch {
     /// It was found in a state.
     pub(crate) fn found(&mut self, state: NmtState, at: Instant) {
         self.states = vec![(at, state)];
+    }
+
+    /// 1017h holds `value`: what it holds after a reset may be the same, if it was stored.
+    pub(crate) fn found_heartbeat(&mut self, value: &[u8]) {
+        self.wrote(HEARTBEAT, value);
+        self.may_outlive_reset |= self.heartbeat != self.heartbeat_by_default;
     }
 
     /// A case begins: what was before the present state matters no more.
@@ -99,7 +111,7 @@ impl NodeWatch {
     pub(crate) fn booted(&mut self, at: Instant) {
         self.states.push((at, NmtState::PreOperational));
         self.boot_up_due = false;
-        self.set_heartbeat(self.heartbeat_by_default, None, Some(at));
+        self.reset_heartbeat(at);
     }
 
     /// Whether `state`, seen at `at`, is right by what the node had been told by then. Each new state may take
@@ -127,6 +139,7 @@ impl NodeWatch {
     /// Whether a heartbeat at `at` is in order: they are on, or were until just before.
     pub(crate) fn had_heartbeat(&self, at: Instant) -> bool {
         self.heartbeat
+            || self.unsure
             || self
                 .heartbeat_ended_at
                 .is_some_and(|ended| ended.is_none_or(|ended| at <= ended + GRACE))
@@ -151,7 +164,7 @@ impl NodeWatch {
             Command::EnterPreOperational => NmtState::PreOperational,
             Command::ResetNode | Command::ResetCommunication => {
                 self.boot_up_due = true;
-                self.set_heartbeat(self.heartbeat_by_default, None, Some(at));
+                self.reset_heartbeat(at);
                 NmtState::PreOperational
             }
             Command::Unknown(_) => return,
@@ -171,13 +184,22 @@ impl NodeWatch {
 
     /// The client is about to end a download of `value`.
     pub(crate) fn wrote(&mut self, object: Multiplexer, value: &[u8]) {
-        if object.index != 0x1017 {
+        if object.index == STORE {
+            self.may_outlive_reset |= self.heartbeat != self.heartbeat_by_default;
+        }
+        if object != HEARTBEAT {
             return;
         }
         let bytes = value.iter().take(4).rev();
         let milliseconds = bytes.fold(0, |value, byte| value << 8 | u64::from(*byte));
         let period = (milliseconds != 0).then(|| Duration::from_millis(milliseconds));
+        self.unsure = false;
         self.set_heartbeat(period.is_some(), period, None);
+    }
+
+    fn reset_heartbeat(&mut self, at: Instant) {
+        self.unsure = self.may_outlive_reset;
+        self.set_heartbeat(self.heartbeat_by_default, None, Some(at));
     }
 
     fn set_heartbeat(&mut self, on: bool, period: Option<Duration>, at: Option<Instant>) {
@@ -188,6 +210,11 @@ impl NodeWatch {
         self.heartbeat_period = period;
     }
 }
+
+/// The period of the heartbeat.
+pub(crate) const HEARTBEAT: Multiplexer = Multiplexer::new(0x1017, 0);
+/// The object that saves parameters.
+const STORE: u16 = 0x1010;
 
 /// How long after it has ended a heartbeat may still come that was already waiting for the bus.
 const GRACE: Duration = Duration::from_millis(10);
@@ -268,5 +295,36 @@ mod tests {
         assert!(watch.boot_up_due);
         assert!(watch.had_heartbeat(ms(299)));
         assert!(!watch.had_heartbeat(ms(320)));
+    }
+
+    #[test]
+    fn a_saved_heartbeat_may_come_after_a_reset() {
+        let mut watch = NodeWatch::new(false);
+        let node = NodeId::new(1);
+        let mut send = |text: &str, at| watch.sent(&text.parse().expect("a frame"), ms(at), node);
+        send("601#2B1710000A000000", 10);
+        send("601#2310100173617665", 20);
+        send("601#2B17100000000000", 30);
+        send("000#8201", 300);
+        assert!(watch.had_heartbeat(ms(500)));
+        watch.booted(ms(510));
+        assert!(watch.had_heartbeat(ms(600)));
+        watch.wrote(HEARTBEAT, &[0, 0]);
+        watch.confirmed(ms(610));
+        assert!(!watch.had_heartbeat(ms(700)));
+    }
+
+    #[test]
+    fn a_heartbeat_that_was_found_may_come_after_a_reset() {
+        let mut watch = NodeWatch::new(false);
+        watch.found_heartbeat(&[0xE8, 0x03]);
+        assert!(watch.heartbeat && watch.had_heartbeat(ms(10)));
+        watch.commanded(Command::ResetNode, ms(20));
+        assert!(!watch.heartbeat && watch.had_heartbeat(ms(500)));
+
+        let mut watch = NodeWatch::new(false);
+        watch.found_heartbeat(&[0, 0]);
+        watch.commanded(Command::ResetNode, ms(20));
+        assert!(!watch.had_heartbeat(ms(500)));
     }
 }

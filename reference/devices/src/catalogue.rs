@@ -17,8 +17,8 @@ pub struct DeviceKind {
     pub title: &'static str,
     /// Its ports; a participant's port number counts them.
     pub ports: &'static [PortKind],
-    /// The ways it can be made to depart from one clause.
-    pub faults: &'static [Fault],
+    /// The ways it can be made to depart from one clause, in lists by subject.
+    pub faults: &'static [&'static [Fault]],
     /// The other things a right device of this kind may do.
     pub variants: &'static [Variant],
     /// Builds one, powered on since the lane was opened.
@@ -81,23 +81,6 @@ pub struct Fault {
     pub(crate) apply: fn(&mut Behaviour),
 }
 
-/// Several lists of faults as one; `N` is their length together.
-pub(crate) const fn all_of<const N: usize>(lists: &[&[Fault]]) -> [Fault; N] {
-    let mut all = [lists[0][0]; N];
-    let (mut list, mut next) = (0, 0);
-    while list < lists.len() {
-        let mut index = 0;
-        while index < lists[list].len() {
-            all[next] = lists[list][index];
-            next += 1;
-            index += 1;
-        }
-        list += 1;
-    }
-    assert!(next == N, "the lists are not as long as the whole");
-    all
-}
-
 /// Something else that a right device may do.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {
@@ -141,6 +124,11 @@ impl fmt::Display for UnknownFault {
 impl std::error::Error for UnknownFault {}
 
 impl DeviceKind {
+    /// The ways it can be made to depart from one clause.
+    pub fn faults(&self) -> impl Iterator<Item = &'static Fault> + use<> {
+        self.faults.iter().copied().flatten()
+    }
+
     /// `documented`, changed as `settings` ask.
     pub(crate) fn behaviour(
         &self,
@@ -153,7 +141,7 @@ impl DeviceKind {
             (variant.ok_or_else(|| self.unknown(name))?.apply)(&mut behaviour);
         }
         if let Some(name) = &settings.fault {
-            let fault = self.faults.iter().find(|fault| fault.name == name);
+            let fault = self.faults().find(|fault| fault.name == name);
             match (fault, canopen::ObjectFault::parse(name)) {
                 (Some(fault), _) => (fault.apply)(&mut behaviour),
                 (None, Some(fault)) if self.is_canopen() => {

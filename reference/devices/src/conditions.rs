@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use fieldproof_link::{Instant, NotOffered};
+use fieldproof_link::{Instant, NotOffered, StateName, StateValue};
 
 use crate::canopen::{Abort, Answer, HARDWARE, Slave};
 
@@ -92,10 +92,9 @@ impl Conditions {
             .map_or(Answer::Now, |(_, _, abort)| Answer::Refused(*abort))
     }
 
-    pub(crate) fn state(&self) -> impl Iterator<Item = (String, String)> {
-        CONDITIONS.iter().map(|(name, ..)| {
-            let active = self.active.contains(name);
-            ((*name).to_owned(), active.to_string())
-        })
+    pub(crate) fn state(&self) -> impl Iterator<Item = (StateName, StateValue)> {
+        CONDITIONS
+            .iter()
+            .map(|(name, ..)| ((*name).into(), self.active.contains(name).into()))
     }
 }

@@ -150,10 +150,11 @@ proptest! {
     #[test]
     fn no_input_breaks_a_device(events in prop::collection::vec(event(), 1..60), choice in any::<prop::sample::Index>()) {
         for kind in kinds() {
-            let fault = (choice.index(kind.faults.len() + 1)).checked_sub(1);
+            let faults: Vec<_> = kind.faults().collect();
+            let fault = (choice.index(faults.len() + 1)).checked_sub(1);
             let settings = Settings {
                 node: Some(1),
-                fault: fault.map(|fault| kind.faults[fault].name.to_owned()),
+                fault: fault.map(|fault| faults[fault].name.to_owned()),
                 ..Settings::default()
             };
             let device = (kind.build)(&settings).unwrap();

@@ -64,7 +64,7 @@ fn listed(device: &Device) -> ListedDevice<'_> {
             .iter()
             .map(|deviation| deviation.check.as_str())
             .collect(),
-        faults: device.faults().iter().map(|fault| fault.name).collect(),
+        faults: device.faults().map(|fault| fault.name).collect(),
         variants: device
             .variants()
             .iter()
@@ -136,7 +136,7 @@ pub(crate) fn faults(format: Format, screen: &mut Screen) -> Result<Exit, Compla
     let faults: Vec<ListedFault> = fieldproof_devices::kinds()
         .iter()
         .flat_map(|kind| {
-            kind.faults.iter().map(|fault| ListedFault {
+            kind.faults().map(|fault| ListedFault {
                 device: kind.name,
                 fault: fault.name,
                 breaks: fault.breaks,

@@ -113,7 +113,7 @@ fn rounds(library: &Library, plan: &Plan, options: &ProveOptions) -> Result<Vec<
 /// The faults that `device` is given, each with the clause it breaks: those asked for, or else all that have a name and
 /// some of each kind that single values can have.
 fn faults(device: &Device, asked: &[String]) -> Vec<(String, &'static str)> {
-    let named = device.faults().iter();
+    let named = device.faults();
     let named = named.map(|fault| (fault.name.to_owned(), fault.breaks));
     if asked.is_empty() {
         let of_objects = object_faults::some(device).into_iter();
@@ -133,7 +133,7 @@ fn faults(device: &Device, asked: &[String]) -> Vec<(String, &'static str)> {
 fn faults_must_be_known(devices: &[&Device], asked: &[String]) -> Result<(), Complaint> {
     let known: BTreeSet<&str> = devices
         .iter()
-        .flat_map(|device| device.faults().iter().map(|it| it.name))
+        .flat_map(|device| device.faults().map(|it| it.name))
         .collect();
     let is_known = |name: &&String| {
         let of_object = |device: &&Device| object_faults::of(device, name).is_some();

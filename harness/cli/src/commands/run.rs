@@ -166,7 +166,7 @@ fn plan(options: &RunOptions) -> Plan {
 
 /// The devices that there is something to play on.
 fn devices<'l>(library: &'l Library, plan: &Plan) -> Result<Vec<&'l Device>, Complaint> {
-    let faults = |device: &Device| device.faults().iter().map(|it| it.name).collect::<Vec<_>>();
+    let faults = |device: &Device| device.faults().map(|it| it.name).collect::<Vec<_>>();
     let variants = |device: &Device| {
         device
             .variants()

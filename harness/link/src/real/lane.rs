@@ -1,13 +1,12 @@
 //! The lane on real links.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::port::Port;
 use super::ports::{GivesUp, Heard, Ports};
 use crate::{
     Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Origin, Outbox,
-    Participant, PortIndex, PortProperties, Sent, Stimulus, StimulusError, StimulusKind,
+    Participant, PortIndex, PortProperties, Sent, State, Stimulus, StimulusError, StimulusKind,
     Transmission,
 };
 
@@ -271,7 +270,7 @@ impl Lane for RealLane {
         }
     }
 
-    fn device_state(&self) -> BTreeMap<String, String> {
-        BTreeMap::new()
+    fn device_state(&self) -> State {
+        State::default()
     }
 }

@@ -1,12 +1,11 @@
 //! The simulated lane as the engine sees it.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::world::{Hung, World};
 use crate::{
     Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Participant, PortIndex,
-    PortProperties, Sent, Stimulus, StimulusError, StimulusKind, Transmission,
+    PortProperties, Sent, State, Stimulus, StimulusError, StimulusKind, Transmission,
 };
 
 /// How long a CAN frame of the tester's may wait for its start: for the bus, and for a node to acknowledge it.
@@ -162,7 +161,7 @@ impl Lane for SimLane {
         self.world.remove_companion(companion);
     }
 
-    fn device_state(&self) -> BTreeMap<String, String> {
+    fn device_state(&self) -> State {
         let device = self
             .device
             .and_then(|device| self.world.participant(device));

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use fieldproof_link::sim::Builder;
 use fieldproof_link::{
-    Instant, Lane, Line, LinkError, Outbox, Participant, PortIndex, Reception, Stimulus,
+    Instant, Lane, Line, LinkError, Outbox, Participant, PortIndex, Reception, State, Stimulus,
     StimulusError, StimulusKind, Transmission,
 };
 
@@ -73,7 +73,7 @@ fn stimuli_are_for_the_device_alone() {
     let power = Stimulus::Power { on: true };
     assert_eq!(lane.offers(), []);
     assert_eq!(lane.stimulate(&power), Err(StimulusError::NotOffered));
-    assert!(lane.device_state().is_empty());
+    assert_eq!(lane.device_state(), State::default());
 
     let mut builder = Builder::new();
     let can = builder.can_bus("can", 500_000);

@@ -1,6 +1,6 @@
 //! Values of the dictionary.
 
-use fieldproof_dictionary::{Access, DataType, Default, Dictionary, Entry};
+use fieldproof_dictionary::{Access, DataType, Default, Dictionary, Entry, Object, ObjectKind};
 use fieldproof_suite::Columns;
 use fieldproof_suite::model::{AccessWord, Has, MappableInto, Query, TypeWord};
 
@@ -13,7 +13,16 @@ pub(super) fn objects(query: &Query, dictionary: &Dictionary, node: u8) -> Vec<C
         .filter(|(index, sub, _)| *index >= 0x1000 && is_meant(query, *index, *sub))
         .filter_map(|(index, sub, entry)| {
             let word = type_word(entry.data_type)?;
-            let value = ValueOf { entry, word, node };
+            let structure = dictionary
+                .object(index)
+                .filter(|_| sub == 0xFF)
+                .and_then(structure);
+            let value = ValueOf {
+                entry,
+                word,
+                node,
+                structure,
+            };
             is_so(query, &value).then(|| columns(index, sub, &value))
         })
         .collect()
@@ -23,6 +32,8 @@ struct ValueOf<'d> {
     entry: &'d Entry,
     word: TypeWord,
     node: u8,
+    /// Of sub-index FFh: what it must be.
+    structure: Option<u32>,
 }
 
 impl ValueOf<'_> {
@@ -88,6 +99,23 @@ impl ValueOf<'_> {
     }
 }
 
+/// What sub-index FFh of an object tells (CiA 301), as far as an EDS says it: it has the data type of an array, and not
+/// that of a record.
+///
+/// | bits | |
+/// | --- | --- |
+/// | 0 to 7 | object code |
+/// | 8 to 15 | data type |
+/// | 16 to 31 | 0 |
+fn structure(object: &Object) -> Option<u32> {
+    let element = match object.kind {
+        ObjectKind::Array => object.entries.get(&1)?,
+        _ => return None,
+    };
+    let data_type = u8::try_from(element.data_type.code()).ok()?;
+    Some(u32::from(data_type) << 8 | u32::from(object.kind.code()))
+}
+
 /// Bytes as a suite writes them.
 fn pairs(bytes: &[u8]) -> String {
     let digits: Vec<String> = bytes.iter().map(|byte| format!("{byte:02X}")).collect();
@@ -111,6 +139,7 @@ fn is_so(query: &Query, value: &ValueOf<'_>) -> bool {
         Has::High => value.high().is_some(),
         Has::Below => value.below().is_some(),
         Has::Above => value.above().is_some(),
+        Has::Structure => value.structure.is_some(),
         // No EDS says so.
         Has::Codes | Has::Bits => false,
     });
@@ -173,6 +202,8 @@ fn columns(index: u16, sub: u8, value: &ValueOf<'_>) -> Columns {
         columns.extend(number.map(|number| (suffix, value.written(number))));
     }
     columns.extend(value.default().map(|default| ("-default", default)));
+    let structure = value.structure.map(|word| format!("0x{word:08X}"));
+    columns.extend(structure.map(|structure| ("-structure", structure)));
     columns
 }
 

@@ -65,6 +65,8 @@ fn is_so(query: &Query, register: &Register) -> bool {
         Has::Above => above(register).is_some(),
         Has::Codes => !register.codes.is_empty(),
         Has::Bits => !register.bits.is_empty(),
+        // Of objects only.
+        Has::Structure => false,
     });
     let effects = query.effect.is_empty()
         || register.effects.as_ref().is_some_and(|effects| {

@@ -17,7 +17,7 @@ impl Tester<'_> {
         let mut chance = fastrand::Rng::with_seed(flood.seed);
         let mut at = self.session.now();
         for number in 1..=flood.frames {
-            let Some(frame) = draw(flood, &mut chance) else {
+            let Some(frame) = draw(flood, number, &mut chance) else {
                 return Err(Stop::Bench("the flood has a frame that is none".into()));
             };
             match flood.period {
@@ -49,14 +49,16 @@ fn is_answer(flood: &Flood, received: &Received) -> bool {
     }
 }
 
-/// The next frame; `None` if there is no such frame, which the loader has seen to.
-fn draw(flood: &Flood, chance: &mut fastrand::Rng) -> Option<Frame> {
+/// The next frame; `None` if there is no such frame, which the loader has seen to. Chance might never come to some values of
+/// the first byte, where most services have their command: these have their turns.
+fn draw(flood: &Flood, number: u32, chance: &mut fastrand::Rng) -> Option<Frame> {
     let id = draw_id(&flood.ids, chance)?;
     if flood.remote {
         return Frame::remote(id, chance.u8(0..=8));
     }
     let mut bytes = [0_u8; 8];
     bytes.fill_with(|| chance.u8(..));
+    bytes[0] = number.to_le_bytes()[0];
     let len = match flood.data.len() {
         0 => chance.usize(0..=8),
         patterns => {

@@ -12,7 +12,7 @@ use super::{CaseTemplate, Suite};
 use crate::Position;
 use crate::code;
 use crate::expand::{BENCH_NAMES, Scope, is_name};
-use crate::model::{Has, Query, QueryKind, TypeWord};
+use crate::model::{Query, QueryKind, TypeWord};
 use crate::node::{Entry, Key, Kind, Node};
 use crate::problem::Problem;
 use crate::read::Reader;
@@ -244,17 +244,8 @@ fn sample_register(query: &Query) -> Columns {
         ("-count", text("1")),
         ("-last", text("1")),
     ];
-    columns.extend(query.has.iter().filter_map(|has| {
-        let suffix = match has {
-            Has::Default => "-default",
-            Has::Low => "-low",
-            Has::High => "-high",
-            Has::Below => "-below",
-            Has::Above => "-above",
-            Has::Codes | Has::Bits => return None,
-        };
-        Some((suffix, text("1")))
-    }));
+    let said = query.has.iter().filter_map(|has| has.column());
+    columns.extend(said.map(|suffix| (suffix, text("1"))));
     columns
 }
 
@@ -276,16 +267,7 @@ fn sample_object(query: &Query) -> Columns {
         ("-bits", "8".to_owned()),
         ("-mapping", "0x20000008".to_owned()),
     ];
-    columns.extend(query.has.iter().filter_map(|has| {
-        let suffix = match has {
-            Has::Default => "-default",
-            Has::Low => "-low",
-            Has::High => "-high",
-            Has::Below => "-below",
-            Has::Above => "-above",
-            Has::Codes | Has::Bits => return None,
-        };
-        Some((suffix, number.to_owned()))
-    }));
+    let said = query.has.iter().filter_map(|has| has.column());
+    columns.extend(said.map(|suffix| (suffix, number.to_owned())));
     columns
 }

@@ -284,10 +284,27 @@ pub enum Has {
     Below,
     /// A highest value below the highest of the type.
     Above,
+    /// Of sub-index FFh: the object code and the data type, as the standard has them in there.
+    Structure,
     /// Meanings of single values.
     Codes,
     /// Meanings of single bits.
     Bits,
+}
+
+impl Has {
+    /// What stands behind a dash in the column that this gives a case; none if it gives none.
+    pub(crate) const fn column(self) -> Option<&'static str> {
+        match self {
+            Has::Default => Some("-default"),
+            Has::Low => Some("-low"),
+            Has::High => Some("-high"),
+            Has::Below => Some("-below"),
+            Has::Above => Some("-above"),
+            Has::Structure => Some("-structure"),
+            Has::Codes | Has::Bits => None,
+        }
+    }
 }
 
 /// Where an object may be mapped.
@@ -459,6 +476,7 @@ impl fmt::Display for Query {
                 Has::High => "with a highest value",
                 Has::Below => "with a value below its lowest",
                 Has::Above => "with a value above its highest",
+                Has::Structure => "with a structure that the description tells",
                 Has::Codes => "with meanings of single values",
                 Has::Bits => "with meanings of single bits",
             }

@@ -1,5 +1,7 @@
 //! The faults that expedited and segmented SDO transfers can be given, each one departure from one clause.
 
+use std::time::Duration;
+
 use super::{AbortMultiplexer, ClientAbort, ReadOnly, SecondInitiate, ShortRequest, StraySegment};
 use crate::Fault;
 use crate::catalogue::Behaviour;
@@ -168,6 +170,15 @@ pub(crate) const SEGMENTED: &[Fault] = &[
         "CiA 301: SDO initiate requests",
         "answers no new request until a segmented transfer that the client has dropped is aborted",
         |behaviour| behaviour.canopen.sdo.second_initiate = SecondInitiate::Ignored,
+    ),
+    fault(
+        "stuck-after-time-out",
+        "CiA 301: SDO abort transfer, abort code 05040000h",
+        "gives up a transfer that is not carried on, and answers no request from then on",
+        |behaviour| {
+            behaviour.canopen.sdo.timeout = Some(Duration::from_secs(1));
+            behaviour.canopen.sdo.serves_after_time_out = false;
+        },
     ),
     fault(
         "transfer-survives-reset",

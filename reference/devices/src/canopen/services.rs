@@ -1,7 +1,7 @@
 //! Services that only some slaves have, at a reset, and the SDO servers beside the default one.
 
 use fieldproof_can::{Frame, Id};
-use fieldproof_link::Instant;
+use fieldproof_link::{Instant, StateName, StateValue};
 
 use super::consumers::Consumers;
 use super::emergency::Errors;
@@ -124,13 +124,10 @@ impl Slave {
         servers.position(|server| server.request == Some(raw))
     }
 
-    pub(super) fn servers_state(&self) -> impl Iterator<Item = (String, String)> {
-        let servers = self.servers.iter();
-        servers.map(|one| {
-            (
-                format!("sdo {:04X}", one.index),
-                one.server.name().to_owned(),
-            )
+    pub(super) fn servers_state(&self) -> impl Iterator<Item = (StateName, StateValue)> {
+        self.servers.iter().map(|one| {
+            let name = StateName::Hexadecimal("sdo ", one.index);
+            (name, one.server.name().into())
         })
     }
 

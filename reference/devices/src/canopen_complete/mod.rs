@@ -1,22 +1,19 @@
 //! A slave that has all that CiA 301 and CiA 305 give one: 500 kbit/s, node 10. It is no vendor's.
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
 };
 
 use crate::canopen::{
-    self, Address, BlockTransfer, Factory, LssAbilities, Profile, Slave, TransmitEvent,
-    block_faults, communication_faults, error_control_faults, faults, lss_faults, nmt_faults,
-    pdo_faults, robustness_faults, sdo_faults, service_faults,
+    self, Address, BlockTransfer, Factory, LssAbilities, ObjectFault, ObjectFaultKind, Profile,
+    Slave, TransmitEvent, block_faults, communication_faults, error_control_faults, faults,
+    lss_faults, nmt_faults, pdo_faults, robustness_faults, sdo_faults, service_faults,
 };
-use crate::catalogue::{
-    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of,
-};
+use crate::catalogue::{Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault};
 
 mod values;
 
@@ -47,26 +44,18 @@ const OWN_FAULTS: &[Fault] = &[
     faults::LSS_SERIAL_IGNORED,
     faults::LSS_BIT_TIMING_MISSING,
     faults::NODE_ID_ACTIVE_BEFORE_RESET,
+    Fault {
+        name: "structure-wrong",
+        breaks: "CiA 301: sub-index FFh, object code and data type",
+        words: "sub-index FFh of the array 2203h names another type than its elements have",
+        caught_by: "sdo",
+        apply: |behaviour| {
+            let fault = ObjectFault::new(ObjectFaultKind::WrongDefault, 0x2203, 0xFF);
+            behaviour.canopen.object_fault = Some(fault);
+        },
+    },
 ];
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + nmt_faults::REST.len()
-        + error_control_faults::COMMON.len()
-        + error_control_faults::REST.len()
-        + service_faults::ALL.len()
-        + communication_faults::ALL.len()
-        + OWN_FAULTS.len()
-        + sdo_faults::ACCESS.len()
-        + sdo_faults::SEGMENTED.len()
-        + sdo_faults::ANY_LENGTH.len()
-        + sdo_faults::SERVERS.len()
-        + sdo_faults::REASONS.len()
-        + block_faults::BLOCK.len()
-        + lss_faults::EVERY.len()
-        + lss_faults::COMPLETE.len()
-        + robustness_faults::ALL.len()
-        + pdo_faults::ALL.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     nmt_faults::REST,
@@ -85,7 +74,7 @@ static FAULTS: [Fault;
     lss_faults::EVERY,
     lss_faults::COMPLETE,
     robustness_faults::ALL,
-]);
+];
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -95,7 +84,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "can",
         medium: Medium::Can { bit_rate: BIT_RATE },
     }],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         canopen::variants::TPDO_WITH_FIRST_SYNC,
         canopen::variants::NO_TPDO_ON_START,
@@ -229,7 +218,7 @@ impl Participant for Complete {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         let mut state = self.slave.state();
         state.extend(self.values.conditions.state());
         state

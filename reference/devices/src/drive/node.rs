@@ -1,9 +1,7 @@
 //! A drive on its CAN port.
 
-use std::collections::BTreeMap;
-
 use fieldproof_can::Frame;
-use fieldproof_link::{Instant, NotOffered, Outbox};
+use fieldproof_link::{Instant, NotOffered, Outbox, State};
 
 use super::{Drive, Model};
 use crate::canopen::{Factory, Profile, Slave};
@@ -76,12 +74,12 @@ impl DriveNode {
         Ok(())
     }
 
-    pub(crate) fn state(&self) -> BTreeMap<String, String> {
+    pub(crate) fn state(&self) -> State {
         let mut state = self.slave.state();
         state.extend(self.drive.conditions.state());
         let drive = &self.drive;
-        state.insert("drive".to_owned(), drive.power.name().to_owned());
-        state.insert("drive-fault".to_owned(), drive.cause.to_string());
+        state.insert("drive", drive.power.name());
+        state.insert("drive-fault", drive.cause.to_string());
         state
     }
 }

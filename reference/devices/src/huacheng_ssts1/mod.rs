@@ -2,13 +2,13 @@
 
 pub(crate) mod registers;
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::canopen::{
@@ -16,7 +16,7 @@ use crate::canopen::{
     service_faults,
 };
 use crate::catalogue::{
-    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
 };
 use crate::drive::{self, DriveNode, Model};
 use crate::modbus::{self, ModbusSlave};
@@ -42,14 +42,7 @@ const OWN_FAULTS: &[Fault] = &[
     faults::EMERGENCY_WITHOUT_REGISTER,
     modbus::faults::WRITE_MULTIPLE_FORGETS,
 ];
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + error_control_faults::COMMON.len()
-        + modbus::faults::COMMON.len()
-        + OWN_FAULTS.len()
-        + drive::faults::COMMON.len()
-        + drive::faults::VALUES.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
@@ -57,7 +50,7 @@ static FAULTS: [Fault;
     OWN_FAULTS,
     drive::faults::COMMON,
     drive::faults::VALUES,
-]);
+];
 
 /// Section 4.3 names the modes: profile position, velocity and torque, homing, and the cyclic synchronous ones. The
 /// unit of velocity is rpm; ten thousand pulses are a revolution of the motor that section 1 has its defaults for.
@@ -82,7 +75,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(registers::LINE),
         },
     ],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         Variant {
             name: "sdo-in-stopped",
@@ -255,7 +248,7 @@ impl Participant for HuachengSsts1 {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         use modbus::Registers as _;
         let mut state = self.node.state();
         state.extend(self.modbus.registers().state());

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fieldproof_link::{NotOffered, Parity, SerialSettings, StopBits};
+use fieldproof_link::{NotOffered, Parity, SerialSettings, State, StateName, StopBits};
 
 use crate::modbus::{Behaviour, Exception, ExceptionCodes, Registers};
 
@@ -225,7 +225,7 @@ impl Registers for DriveRegisters {
         self.values.insert(register, value);
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         let parameters = GROUPS
             .iter()
             .filter(|group| !matches!(group.takes, Nothing))
@@ -233,9 +233,9 @@ impl Registers for DriveRegisters {
             .map(|(number, default)| {
                 let value = self.values.get(&number).copied();
                 let value = value.unwrap_or(default.cast_unsigned());
-                (format!("P{number:03}"), value.to_string())
+                (StateName::Decimal("P", number), value.into())
             });
-        let address = ("modbus address".to_owned(), self.address.to_string());
+        let address = ("modbus address".into(), self.address.into());
         parameters.chain([address]).collect()
     }
 }

@@ -155,13 +155,8 @@ fn registers_and_dictionary_are_as_new_after_power_off() {
     script.play("wait 30 ms");
     let before = script.device.state();
     script.play(">> 01 06 01 45 03 E8 99 5D\n > 601#2F60600003000000\n begin local-control");
-    let changed: Vec<_> = script
-        .device
-        .state()
-        .into_iter()
-        .filter(|(name, value)| before.get(name) != Some(value))
-        .map(|(name, _)| name)
-        .collect();
+    let changed = before.differences(&script.device.state());
+    let changed: Vec<_> = changed.into_iter().map(|it| it.name).collect();
     assert_eq!(changed, ["6060:00", "P325", "local-control"]);
     script.play("end local-control\n power off\n power on\n wait 30 ms");
     assert_eq!(script.device.state(), before);

@@ -2,11 +2,9 @@
 
 mod registers;
 
-use std::collections::BTreeMap;
-
 use fieldproof_link::{
-    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
-    Transmission,
+    Framing, Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus,
+    StimulusKind, Transmission,
 };
 
 use crate::catalogue::{DeviceKind, Medium, PortKind, Settings, UnknownFault};
@@ -21,7 +19,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "serial",
         medium: Medium::Serial(LINE),
     }],
-    faults: modbus::faults::COMMON,
+    faults: &[modbus::faults::COMMON],
     variants: &[modbus::variants::SLOW],
     build,
 };
@@ -132,7 +130,7 @@ impl Participant for Inverter {
     }
 
     /// Every register: `register 2501`, the value in decimal.
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.slave.state()
     }
 }

@@ -1,8 +1,6 @@
 //! The registers of group 25: control 2500h to 251Fh, monitor 2520h to 252Fh.
 
-use std::collections::BTreeMap;
-
-use fieldproof_link::{NotOffered, Parity, SerialSettings, StopBits};
+use fieldproof_link::{NotOffered, Parity, SerialSettings, State, StateName, StopBits};
 
 use crate::modbus::{Behaviour, Exception, Registers};
 
@@ -176,10 +174,10 @@ impl Registers for InverterRegisters {
     }
 
     /// `register 2501` and so on, the values in decimal.
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         (FIRST..)
             .zip(self.values)
-            .map(|(register, value)| (format!("register {register:04X}"), value.to_string()))
+            .map(|(register, value)| (StateName::Hexadecimal("register ", register), value.into()))
             .collect()
     }
 }

@@ -1,12 +1,11 @@
 //! A Kinco servo drive on CAN: 500 kbit/s, node 1.
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
 };
 
 use crate::canopen::{
@@ -14,7 +13,7 @@ use crate::canopen::{
     service_faults,
 };
 use crate::catalogue::{
-    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
+    Behaviour, DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant,
 };
 use crate::drive::{self, DriveNode, Model};
 
@@ -37,20 +36,14 @@ const OWN_FAULTS: &[Fault] = &[
     faults::GUARDING_TOGGLE_STUCK,
     faults::MAPPING_ENTRY_BYTE_ORDER,
 ];
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + error_control_faults::COMMON.len()
-        + OWN_FAULTS.len()
-        + drive::faults::COMMON.len()
-        + drive::faults::OPTIONS.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     OWN_FAULTS,
     drive::faults::COMMON,
     drive::faults::OPTIONS,
-]);
+];
 
 /// The slides have what profile position (607Ah, 6081h) and profile velocity (60FFh) need, and no other mode.
 const MODEL: Model = Model {
@@ -68,7 +61,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "can",
         medium: Medium::Can { bit_rate: BIT_RATE },
     }],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         Variant {
             name: "download-data-not-echoed",
@@ -194,7 +187,7 @@ impl Participant for KincoServo {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.node.state()
     }
 }

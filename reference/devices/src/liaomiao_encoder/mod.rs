@@ -6,22 +6,20 @@ mod model;
 mod registers;
 mod shaft;
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::canopen::{
     self, Address, Factory, LssAbilities, Profile, Slave, TransmitEvent, error_control_faults,
     faults, lss_faults, nmt_faults,
 };
-use crate::catalogue::{
-    DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant, all_of,
-};
+use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, Variant};
 use crate::modbus::{self, ModbusSlave};
 pub use behaviour::{Behaviour, PresetEffect};
 use model::EncoderModel;
@@ -62,14 +60,7 @@ const OWN_FAULTS: &[Fault] = &[
     modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
 ];
 const ENCODER_FAULTS: &[Fault] = behaviour::FAULTS;
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + error_control_faults::COMMON.len()
-        + modbus::faults::COMMON.len()
-        + OWN_FAULTS.len()
-        + lss_faults::EVERY.len()
-        + ENCODER_FAULTS.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
@@ -77,7 +68,7 @@ static FAULTS: [Fault;
     OWN_FAULTS,
     lss_faults::EVERY,
     ENCODER_FAULTS,
-]);
+];
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -93,7 +84,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(registers::LINE),
         },
     ],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         Variant {
             name: "tpdo-on-start",
@@ -323,7 +314,7 @@ impl Participant for LiaomiaoEncoder {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         use modbus::Registers as _;
         let mut state = self.slave.state();
         state.extend(self.modbus.registers().state());

@@ -1,9 +1,8 @@
 //! The Modbus side of the encoder: its nineteen registers.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fieldproof_link::{NotOffered, Parity, SerialSettings, StopBits};
+use fieldproof_link::{NotOffered, Parity, SerialSettings, State, StateName, StopBits};
 
 use super::model::EncoderModel;
 use crate::modbus::{AddressChangeReply, Behaviour, Command, Exception, Registers, SpeedSign};
@@ -276,7 +275,7 @@ impl Registers for EncoderRegisters {
         }
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         [
             (SLAVE_ADDRESS, u16::from(self.address)),
             (BAUD, self.baud_code),
@@ -286,7 +285,7 @@ impl Registers for EncoderRegisters {
             (SINGLE_TURN_BITS, u16::from(self.model.single_turn_bits)),
         ]
         .into_iter()
-        .map(|(register, value)| (format!("register {register:04X}"), value.to_string()))
+        .map(|(register, value)| (StateName::Hexadecimal("register ", register), value.into()))
         .collect()
     }
 }

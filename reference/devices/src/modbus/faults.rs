@@ -3,7 +3,6 @@
 use super::function_faults::{FUNCTIONS, LINE, REFUSALS};
 use super::{AddressChangeReply, ByteCount, CrcOrder, EchoedValue, SpeedSign};
 use crate::Fault;
-use crate::catalogue::all_of;
 
 /// The CRC of an answer, its bytes in the wrong order.
 pub const CRC_BYTES_SWAPPED: Fault = Fault {
@@ -163,9 +162,8 @@ pub const FAULTS: &[Fault] = &[
 ];
 
 /// What a slave can have that has every function.
-pub(crate) const COMPLETE: [Fault;
-    COMMON.len() + 1 + LINE.len() + REFUSALS.len() + FUNCTIONS.len()] =
-    all_of(&[COMMON, &[WRITE_MULTIPLE_FORGETS], LINE, REFUSALS, FUNCTIONS]);
+pub(crate) const COMPLETE: &[&[Fault]] =
+    &[COMMON, &[WRITE_MULTIPLE_FORGETS], LINE, REFUSALS, FUNCTIONS];
 
 /// What every Modbus slave here can have.
 pub(crate) const COMMON: &[Fault] = &[

@@ -1,9 +1,8 @@
 //! What a slave serves.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fieldproof_link::SerialSettings;
+use fieldproof_link::{SerialSettings, State};
 
 use super::{Behaviour, Exception};
 
@@ -135,5 +134,5 @@ pub trait Registers {
     }
 
     /// What a case could have left changed: names and values.
-    fn state(&self) -> BTreeMap<String, String>;
+    fn state(&self) -> State;
 }

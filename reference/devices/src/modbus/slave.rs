@@ -1,9 +1,8 @@
 //! A Modbus slave around a set of registers: on a serial line, or on a connection.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fieldproof_link::{Character, Framing, Instant, Line, SerialSettings};
+use fieldproof_link::{Character, Framing, Instant, Line, SerialSettings, State};
 
 use super::counters::Counters;
 use super::crc;
@@ -74,10 +73,10 @@ impl<R: Registers> ModbusSlave<R> {
     }
 
     /// What a case could have left changed, the line apart.
-    pub fn state(&self) -> BTreeMap<String, String> {
+    pub fn state(&self) -> State {
         let mut state = self.registers.state();
         let listens = self.counters.listens_only;
-        state.insert("modbus listens only".to_owned(), listens.to_string());
+        state.insert("modbus listens only", listens);
         state
     }
 

@@ -3,10 +3,9 @@
 mod identification;
 mod tables;
 
-use std::collections::BTreeMap;
-
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, Stimulus, StimulusKind,
+    Transmission,
 };
 
 use crate::catalogue::{Behaviour, DeviceKind, Medium, PortKind, Settings, UnknownFault, Variant};
@@ -21,7 +20,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "serial",
         medium: Medium::Serial(tables::LINE),
     }],
-    faults: &modbus::faults::COMPLETE,
+    faults: modbus::faults::COMPLETE,
     variants: &[
         modbus::variants::SLOW,
         modbus::variants::GAPS_TOLERATED,
@@ -120,7 +119,7 @@ impl Participant for ModbusComplete {
         ]
     }
 
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         self.modbus.state()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use fieldproof_link::{NotOffered, Parity, SerialSettings, StopBits};
+use fieldproof_link::{NotOffered, Parity, SerialSettings, State, StateName, StopBits};
 
 use super::identification;
 use crate::modbus::{Behaviour, Exception, Registers};
@@ -287,22 +287,22 @@ impl Registers for CompleteRegisters {
     }
 
     /// Only what is not as after power-on.
-    fn state(&self) -> BTreeMap<String, String> {
-        let coils = self.coils.iter().map(|it| (format!("coil {it}"), 1));
-        let holding = self.holding.iter();
-        let holding = holding.map(|(it, value)| (format!("register {it:04X}"), *value));
-        let records = self.records.iter();
-        let records = records.map(|((file, it), value)| (format!("record {file}:{it}"), *value));
-        let conditions = self.conditions.iter();
-        let conditions = conditions.map(|name| ((*name).to_owned(), 1));
-        let own = [("modbus address".to_owned(), self.address.into())];
-        coils
-            .chain(holding)
-            .chain(records)
-            .chain(conditions)
-            .chain(own)
-            .map(|(name, value)| (name, value.to_string()))
-            .chain([("baud".to_owned(), self.line.baud.to_string())])
-            .collect()
+    fn state(&self) -> State {
+        let mut state = State::default();
+        for coil in &self.coils {
+            state.insert(StateName::Hexadecimal("coil ", *coil), true);
+        }
+        for (register, value) in &self.holding {
+            state.insert(StateName::Hexadecimal("register ", *register), *value);
+        }
+        for ((file, record), value) in &self.records {
+            state.insert(format!("record {file}:{record}"), *value);
+        }
+        for condition in &self.conditions {
+            state.insert(*condition, true);
+        }
+        state.insert("modbus address", self.address);
+        state.insert("baud", self.line.baud);
+        state
     }
 }

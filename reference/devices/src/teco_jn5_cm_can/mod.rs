@@ -4,19 +4,19 @@
 mod behaviour;
 mod gateway;
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use fieldproof_dictionary::{Dictionary, eds};
 use fieldproof_link::{
-    Instant, Line, NotOffered, Outbox, Participant, Reception, Stimulus, StimulusKind, Transmission,
+    Instant, Line, NotOffered, Outbox, Participant, Reception, State, StateName, Stimulus,
+    StimulusKind, Transmission,
 };
 
 use crate::canopen::{
     self, Address, Factory, Profile, Slave, TransmitEvent, error_control_faults, faults, nmt_faults,
 };
-use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault, all_of};
+use crate::catalogue::{DeviceKind, Fault, Medium, PortKind, Settings, UnknownFault};
 use crate::inverter;
 pub use behaviour::{Behaviour, Lost, RunState, TargetSign};
 use gateway::Gateway;
@@ -59,16 +59,12 @@ const OWN_FAULTS: &[Fault] = &[
     behaviour::STATION_UNCHECKED,
     behaviour::EXCEPTION_AS_VALUE,
 ];
-static FAULTS: [Fault;
-    faults::COMMON.len()
-        + nmt_faults::COMMON.len()
-        + error_control_faults::COMMON.len()
-        + OWN_FAULTS.len()] = all_of(&[
+const FAULTS: &[&[Fault]] = &[
     faults::COMMON,
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     OWN_FAULTS,
-]);
+];
 
 /// What can be built.
 pub(crate) const KIND: DeviceKind = DeviceKind {
@@ -84,7 +80,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
             medium: Medium::Serial(inverter::LINE),
         },
     ],
-    faults: &FAULTS,
+    faults: FAULTS,
     variants: &[
         behaviour::STATUSWORD_OF_CIA402,
         behaviour::DEMAND_BEHIND_RAMP,
@@ -256,11 +252,10 @@ impl Participant for TecoJn5CmCan {
     }
 
     /// Without 2025h: its values are the inverter's.
-    fn state(&self) -> BTreeMap<String, String> {
+    fn state(&self) -> State {
         let mut state = self.slave.state();
-        state.retain(|name, _| !name.starts_with("2025:"));
-        let operation = format!("{:04X}", self.gateway.operation());
-        state.insert("operation signal".to_owned(), operation);
+        state.retain(|name| !matches!(name, StateName::Object("", 0x2025, _)));
+        state.insert("operation signal", self.gateway.operation());
         state
     }
 }

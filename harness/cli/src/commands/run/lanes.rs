@@ -113,13 +113,12 @@ pub(super) fn play(
         lanes
             .into_iter()
             .zip(devices)
-            .map(|(lane, device)| match lane.join() {
+            .try_for_each(|(lane, device)| match lane.join() {
                 Ok(played) => played,
                 Err(_) => Err(Complaint::bench(format!(
                     "the lane of {} broke down",
                     device.name()
                 ))),
             })
-            .collect()
     })
 }

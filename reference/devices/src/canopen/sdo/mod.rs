@@ -79,6 +79,8 @@ pub(super) struct Server {
     deadline: Option<Instant>,
     /// The identifier of its answers, if it is not the default server's.
     answers_on: Option<u16>,
+    /// It has given a transfer up, and serves no more.
+    stuck: bool,
     /// The last request.
     request: [u8; 8],
     /// How many transfers were asked for, and how many answers were given.
@@ -134,6 +136,9 @@ impl Slave {
     pub(super) fn serve(&mut self, now: Instant, frame: &Frame, application: &mut dyn Application) {
         let silent = !self.state.permits(Service::Sdo, &self.behaviour);
         if silent && !self.behaviour.nmt.requests_done_in_stopped {
+            return;
+        }
+        if self.sdo.stuck {
             return;
         }
         let Some(request) = self.whole_request(now, frame) else {

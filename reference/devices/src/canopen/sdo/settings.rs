@@ -66,6 +66,8 @@ pub struct OrdinaryTransfer {
     pub same_value_taken: bool,
     /// Only requests to the own node-ID are answered, and not those to the next as well.
     pub own_node_only: bool,
+    /// A server that has given a transfer up serves the next request.
+    pub serves_after_time_out: bool,
     /// A reset ends a transfer.
     pub reset_ends: bool,
     /// Each server has a transfer of its own.
@@ -168,6 +170,7 @@ impl Default for OrdinaryTransfer {
             unknown_object_refused: true,
             same_value_taken: true,
             own_node_only: true,
+            serves_after_time_out: true,
             reset_ends: true,
             servers_apart: true,
             servers_off: true,

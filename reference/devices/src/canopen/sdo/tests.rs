@@ -275,6 +275,35 @@ fn what_is_refused() {
     );
 }
 
+/// With the fault the upload times out, and the reset is all that helps.
+const ABANDONED: &str = "
+    wait 10 ms
+    < 70A#00
+    > 60A#4008100000000000
+    < 58A#4108100010000000
+    wait 1100 ms
+    > 60A#4000100000000000
+    < 58A#4300100000000000
+    > 000#820A
+    wait 10 ms
+    < 70A#00
+    > 60A#4000100000000000
+    < 58A#4300100000000000
+";
+
+#[test]
+fn a_transfer_is_abandoned() {
+    departs(
+        &KIND,
+        "stuck-after-time-out",
+        ABANDONED,
+        &[
+            ("wait 1100 ms", "wait 1100 ms\n< 58A#8008100000000405"),
+            ("< 58A#4300100000000000", ""),
+        ],
+    );
+}
+
 #[test]
 fn a_variant_is_careful() {
     let settings = Settings {

@@ -105,10 +105,10 @@ fn banks_are_whole() {
 fn power_loses_what_was_written() {
     let mut registers = DriveRegisters::default();
     registers.write(325, 1_000);
-    assert_eq!(registers.state()["P325"], "1000");
+    assert_eq!(registers.state().get("P325").as_deref(), Some("1000"));
     registers.power_on();
     assert_eq!(registers.state(), DriveRegisters::default().state());
-    assert_eq!(registers.state()["P325"], "0");
+    assert_eq!(registers.state().get("P325").as_deref(), Some("0"));
 }
 
 #[test]

@@ -111,6 +111,7 @@ impl Slave {
             | Transfer::BlockDownload(BlockDownload { address, .. })
             | Transfer::BlockUpload(BlockUpload { address, .. }) => {
                 self.abort(now, address, Abort::TIMED_OUT);
+                self.sdo.stuck = !self.behaviour.sdo.serves_after_time_out;
             }
             _ => {}
         }

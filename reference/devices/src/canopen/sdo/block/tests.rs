@@ -49,7 +49,7 @@ const KIND: DeviceKind = DeviceKind {
         role: "can",
         medium: Medium::Can { bit_rate: 500_000 },
     }],
-    faults: block_faults::BLOCK,
+    faults: &[block_faults::BLOCK],
     variants: &[
         Variant {
             name: "two-a-block",
@@ -145,7 +145,7 @@ impl Participant for Blocks {
         Err(NotOffered)
     }
 
-    fn state(&self) -> std::collections::BTreeMap<String, String> {
+    fn state(&self) -> fieldproof_link::State {
         self.slave.state()
     }
 }
