@@ -41,7 +41,9 @@ pub(super) fn identity(parts: &[IdentityPart]) -> String {
             "<tr class=\"{class}\"><th scope=\"row\">{}</th><td class=\"object\">{}</td><td>{read}</td><td>{}{sign}</td></tr>",
             escape(&part.name.replace('-', " ")),
             escape(&part.object),
-            described.unwrap_or_else(|| "<span class=\"none\">nothing claimed</span>".to_owned()),
+            described.unwrap_or_else(
+                || "<span class=\"none\" title=\"nothing claimed\">–</span>".to_owned()
+            ),
         );
     }
     text.push_str("</tbody></table></div>");

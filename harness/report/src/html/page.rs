@@ -112,16 +112,16 @@ fn overview(run: &RunStarted, lanes: &[Lane]) -> String {
             lane.number,
             escape(&lane.summary.device)
         );
-        numbers(&mut text, lane.summary.counts);
+        numbers(&mut text, lane.summary.counts, &ORDER);
         text.push_str("</tr>");
     }
     text.push_str("</tbody></table></div>\n");
     text
 }
 
-fn numbers(text: &mut String, counts: VerdictCounts) {
-    for verdict in ORDER {
-        let number = counts.of(verdict);
+fn numbers(text: &mut String, counts: VerdictCounts, columns: &[Verdict]) {
+    for verdict in columns {
+        let number = counts.of(*verdict);
         let class = if number == 0 { "zero" } else { verdict.name() };
         let _ = write!(
             text,
@@ -143,7 +143,7 @@ fn section(run: &RunStarted, lane: &Lane, several: bool) -> String {
             escape(title)
         );
     }
-    text.push_str(&verdict(run, lane));
+    text.push_str(&verdict(run, lane, several));
     let _ = writeln!(
         text,
         "<div class=\"columns\"><div>{}</div><div>{}</div></div>",
@@ -157,7 +157,7 @@ fn section(run: &RunStarted, lane: &Lane, several: bool) -> String {
     text
 }
 
-fn verdict(run: &RunStarted, lane: &Lane) -> String {
+fn verdict(run: &RunStarted, lane: &Lane, several: bool) -> String {
     let (class, words) = verdict_of(&lane.summary, run.strict);
     let counts = lane.summary.counts;
     let applies = counts.total() - counts.skipped;
@@ -184,7 +184,8 @@ fn verdict(run: &RunStarted, lane: &Lane) -> String {
             _ => format!("{} cases that apply", count(applies.into())),
         },
     );
-    if let Some(reason) = &lane.summary.stopped {
+    // Where there is one lane, the head of the page says it.
+    if let Some(reason) = lane.summary.stopped.as_ref().filter(|_| several) {
         let _ = write!(
             text,
             "<p class=\"stopped\">Stopped: {}.</p>",
@@ -255,20 +256,31 @@ fn findings(lane: &Lane) -> String {
     text
 }
 
+/// The verdicts that a table of coverage has columns for: those that there are, and those that everybody looks for.
+fn columns(lane: &Lane) -> Vec<Verdict> {
+    let always = [Verdict::Pass, Verdict::Fail, Verdict::Skipped];
+    let counts = lane.coverage.all.counts;
+    let mut columns = ORDER.to_vec();
+    columns.retain(|verdict| always.contains(verdict) || counts.of(*verdict) > 0);
+    columns
+}
+
 fn coverage(lane: &Lane) -> String {
+    let columns = columns(lane);
+    let heads: String = columns
+        .iter()
+        .map(|verdict| format!("<th scope=\"col\" class=\"n\">{verdict}</th>"))
+        .collect();
     let mut text = format!(
         "<h3>Coverage</h3>\n<p class=\"lead\">By clause of the standard and by section of the manual. A case that follows several is counted at each.</p>\n\
          <div class=\"scroll\" role=\"region\" aria-label=\"coverage\" tabindex=\"0\"><table class=\"coverage\"><thead><tr><th scope=\"col\">section</th>\
-         <th scope=\"col\" class=\"n\">cases</th><th scope=\"col\" class=\"n\">apply</th>{}<th scope=\"col\">why skipped</th></tr></thead>\n",
-        ORDER
-            .iter()
-            .map(|verdict| format!("<th scope=\"col\" class=\"n\">{verdict}</th>"))
-            .collect::<String>()
+         <th scope=\"col\" class=\"n\">cases</th><th scope=\"col\" class=\"n\">apply</th>{heads}<th scope=\"col\">why skipped</th></tr></thead>\n"
     );
+    let span = columns.len() + 4;
     for (document, sections) in &lane.coverage.documents {
         let _ = writeln!(
             text,
-            "<tbody><tr class=\"document\"><th scope=\"rowgroup\" colspan=\"10\">{}</th></tr>",
+            "<tbody><tr class=\"document\"><th scope=\"rowgroup\" colspan=\"{span}\">{}</th></tr>",
             escape(document)
         );
         for (section, tally) in sections {
@@ -276,19 +288,21 @@ fn coverage(lane: &Lane) -> String {
                 "" => "as a whole",
                 name => name,
             };
-            text.push_str(&coverage_row(name, tally, ""));
+            text.push_str(&coverage_row(name, tally, "", &columns));
         }
         text.push_str("</tbody>\n");
     }
-    let _ = writeln!(
-        text,
-        "<tbody>{}</tbody></table></div>",
-        coverage_row("every case once", &lane.coverage.all, " class=\"all\"")
+    let all = coverage_row(
+        "every case once",
+        &lane.coverage.all,
+        " class=\"all\"",
+        &columns,
     );
+    let _ = writeln!(text, "<tbody>{all}</tbody></table></div>");
     text
 }
 
-fn coverage_row(name: &str, tally: &Tally, class: &str) -> String {
+fn coverage_row(name: &str, tally: &Tally, class: &str, columns: &[Verdict]) -> String {
     const SHOWN: usize = 3;
     let counts = tally.counts;
     let mut text = format!(
@@ -297,7 +311,7 @@ fn coverage_row(name: &str, tally: &Tally, class: &str) -> String {
         count(counts.total().into()),
         count((counts.total() - counts.skipped).into())
     );
-    numbers(&mut text, counts);
+    numbers(&mut text, counts, columns);
     let mut reasons: Vec<(&String, &u32)> = tally.reasons.iter().collect();
     reasons.sort_by_key(|(_, number)| std::cmp::Reverse(**number));
     let mut words: Vec<String> = reasons

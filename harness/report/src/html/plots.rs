@@ -96,7 +96,7 @@ pub(super) fn distribution(name: &str, series: &Series) -> String {
         // A single value is to be seen beside ten thousand.
         let tall = (*bin as f64 / most as f64 * (bottom - 24.0)).max(1.5);
         svg.add(format_args!(
-            "<rect class=\"bar\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{tall:.1}\"><title>{}</title></rect>",
+            "<rect class=\"column\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{tall:.1}\"><title>{}</title></rect>",
             LEFT + index as f64 * width + 0.5,
             bottom - tall,
             width - 1.0,
