@@ -34,6 +34,8 @@ pub enum Command {
     Run(RunOptions),
     /// Make all reports again from the journal of a run, finished or not
     Report(ReportOptions),
+    /// Put two runs side by side: what fails now, what no more, which times have moved
+    Compare(CompareOptions),
     /// List the cases of the suites
     List(ListOptions),
     /// Read and check suites and device descriptions; play nothing
@@ -180,6 +182,47 @@ impl std::str::FromStr for KeyValue {
             value: value.to_owned(),
         }))
     }
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+#[command(after_help = COMPARE_EXIT_CODES)]
+pub struct CompareOptions {
+    /// The reports of the run before: the folder, or its journal.
+    #[arg(value_name = "OLD")]
+    pub old: PathBuf,
+    /// The reports of the run after.
+    #[arg(value_name = "NEW")]
+    pub new: PathBuf,
+    /// Accepted failures, each with a reason and the day it expires.
+    #[arg(long, value_name = "FILE")]
+    pub waivers: Option<PathBuf>,
+    /// Documented deviations are failures.
+    #[arg(long)]
+    pub strict: bool,
+    /// A measurement that has become slower is a regression, too.
+    #[arg(long)]
+    pub fail_on_slower: bool,
+    /// How to print it.
+    #[arg(long, default_value = "text")]
+    pub format: CompareFormat,
+}
+
+const COMPARE_EXIT_CODES: &str = "Exit codes:
+  0  no worse than before
+  1  a case fails that did not, or a waiver that is needed has expired
+  2  the input was wrong
+  3  no worse as far as it goes, but the new run did not come to its end";
+
+/// How a comparison is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CompareFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+    /// A page.
+    Html,
 }
 
 /// Options of `report`.
@@ -469,6 +512,10 @@ pub enum SchemaKind {
     Journal,
     /// The report for programs, `report.json`.
     Report,
+    /// What `compare --format json` prints.
+    Comparison,
+    /// A file of accepted failures.
+    Waivers,
 }
 
 /// How thorough a run is.

@@ -252,13 +252,13 @@ fn incomplete(lane: &LaneSummary, planned: u64) -> Option<String> {
     })
 }
 
-fn reader(journal: &Path) -> Result<JournalReader<BufReader<File>>, Complaint> {
+pub(crate) fn reader(journal: &Path) -> Result<JournalReader<BufReader<File>>, Complaint> {
     let file = File::open(journal).map_err(|error| unreadable(journal, &error.into()))?;
     JournalReader::new(BufReader::with_capacity(READ_BYTES, file))
         .map_err(|error| unreadable(journal, &error))
 }
 
-fn unreadable(journal: &Path, error: &JournalError) -> Complaint {
+pub(crate) fn unreadable(journal: &Path, error: &JournalError) -> Complaint {
     let message = match error {
         JournalError::Io(error) => format!("cannot be read: {error}"),
         other => other.to_string(),

@@ -81,15 +81,25 @@ impl Entry {
     /// The entry that `line` is.
     fn parse(line: &mut [u8]) -> Result<Entry, serde_json::Error> {
         let Some((lane, used)) = lane_of(line) else {
-            return Ok(match serde_json::from_slice::<OfRun>(line)? {
-                OfRun::RunStarted(start) => Entry::RunStarted(start),
-                OfRun::RunFinished(end) => Entry::RunFinished(end),
-            });
+            return Entry::parse_any(line);
         };
         // What follows the comma is the event without its bracket.
         let rest = &mut line[used - 1..];
         rest[0] = b'{';
         parse_event(rest).map(|event| Entry::Lane(lane, event))
+    }
+
+    /// A line of the run, or one of a lane that another program has put in another order.
+    fn parse_any(line: &[u8]) -> Result<Entry, serde_json::Error> {
+        let mut members: serde_json::Map<String, serde_json::Value> = serde_json::from_slice(line)?;
+        let Some(lane) = members.remove("lane") else {
+            return Ok(match serde_json::from_slice::<OfRun>(line)? {
+                OfRun::RunStarted(start) => Entry::RunStarted(start),
+                OfRun::RunFinished(end) => Entry::RunFinished(end),
+            });
+        };
+        let event = serde_json::from_value(members.into())?;
+        Ok(Entry::Lane(serde_json::from_value(lane)?, event))
     }
 }
 
@@ -247,6 +257,7 @@ impl<R: BufRead> JournalReader<R> {
                 continue;
             }
             return match Entry::parse(&mut self.line) {
+                Ok(Entry::Lane(of, _)) if lane.is_some_and(|wanted| wanted != of) => continue,
                 Ok(entry) => Ok(Some(entry)),
                 Err(_) if self.is_last()? => Ok(None),
                 Err(error) => Err(JournalError::Line {

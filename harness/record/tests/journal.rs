@@ -172,6 +172,16 @@ fn lane_is_read_without_the_others() {
 }
 
 #[test]
+fn lines_in_another_order_are_read_as_well() {
+    let mut journal = written(&[start()]);
+    journal.extend_from_slice(b"{\"at_ns\":5,\"event\":\"putting-back\",\"lane\":1}\n");
+    let entry = Entry::Lane(1, Event::PuttingBack(PuttingBack { at_ns: 5 }));
+    assert_eq!(all(&journal).unwrap()[1..], [entry]);
+    let mut reader = JournalReader::new(journal.as_slice()).unwrap();
+    assert_eq!(reader.entry(Some(0)).unwrap(), None);
+}
+
+#[test]
 fn bytes_that_a_machine_left_behind_when_it_died_are_left_out() {
     let mut journal = written(&[start()]);
     journal.extend_from_slice(b"\0\0\0\0\n");

@@ -6,6 +6,7 @@
 
 mod capture;
 mod case_text;
+pub mod compare;
 mod console;
 mod difference;
 mod html;

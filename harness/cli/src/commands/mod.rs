@@ -2,6 +2,7 @@
 
 pub(crate) mod bus;
 pub(crate) mod check;
+pub(crate) mod compare;
 pub(crate) mod devices;
 pub(crate) mod eds;
 pub(crate) mod export;

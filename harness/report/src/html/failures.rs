@@ -32,7 +32,7 @@ pub(super) fn block(number: u64, started: &CaseStarted, finished: &CaseFinished)
 }
 
 /// An id that may be broken where its parts end.
-pub(super) fn breakable(id: &str) -> String {
+pub(crate) fn breakable(id: &str) -> String {
     escape(id)
         .replace('/', "/<wbr>")
         .replace('.', ".<wbr>")

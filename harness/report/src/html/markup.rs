@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use fieldproof_record::Verdict;
 
 /// `text` with nothing in it that HTML would take for its own.
-pub(super) fn escape(text: &str) -> Cow<'_, str> {
+pub(crate) fn escape(text: &str) -> Cow<'_, str> {
     if !text.contains(['&', '<', '>', '"', '\'']) {
         return Cow::Borrowed(text);
     }
@@ -45,7 +45,7 @@ pub(super) fn cases(number: u64) -> String {
 }
 
 /// `213 µs`, `1.5 ms`, `2 s`: four digits that count.
-pub(super) fn time(nanoseconds: u64) -> String {
+pub(crate) fn time(nanoseconds: u64) -> String {
     let (unit, name) = match nanoseconds {
         0 => return "0 ms".to_owned(),
         1..1_000 => (1.0, "ns"),
@@ -80,7 +80,7 @@ pub(super) const fn sign(verdict: Verdict) -> &'static str {
 }
 
 /// A verdict as it stands before a case.
-pub(super) fn badge(verdict: Verdict) -> String {
+pub(crate) fn badge(verdict: Verdict) -> String {
     let (name, sign) = (verdict.name(), sign(verdict));
     format!("<span class=\"badge {name}\"><span aria-hidden=\"true\">{sign}</span> {name}</span>")
 }

@@ -11,10 +11,17 @@ mod facts;
 mod failures;
 mod lane;
 mod markup;
+mod measured;
 mod pack;
 mod page;
 mod plots;
 mod series;
+mod shell;
+
+pub(crate) use failures::breakable;
+pub(crate) use markup::{badge, escape, time};
+pub(crate) use plots::percent;
+pub(crate) use shell::shell;
 
 use std::io::{self, Read, Seek, Write};
 

@@ -284,7 +284,7 @@ pub(super) fn bus_load(port: &str, load: &BusLoad) -> String {
 }
 
 /// `12 %`, `0.4 %`
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     let percent = share * 100.0;
     match percent {
         0.0 => "0 %".to_owned(),

@@ -11,6 +11,7 @@ mod fill;
 mod registers;
 mod rows;
 mod suite;
+mod waivers;
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -22,6 +23,7 @@ pub use catalogue::{load_catalogue, unknown_entries};
 pub use device::{load_device, unknown_checks};
 pub use fill::Columns;
 pub use registers::load_registers;
+pub use waivers::load_waivers;
 
 use crate::expand::{Environment, Notation, Scope};
 use crate::lines::Lines;

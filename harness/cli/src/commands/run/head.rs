@@ -1,11 +1,11 @@
 //! The first and the last line of a run's journal.
 
 use std::env;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fieldproof_record::{FORMAT, PlannedLane, RunFinished, RunStarted, UsedFile};
 
 use crate::complaint::Complaint;
+use crate::day::now;
 use crate::input;
 use crate::library::Device;
 use crate::options::{DepthName, RunOptions};
@@ -79,14 +79,4 @@ fn add(files: &mut Vec<UsedFile>, file: &UsedFile) {
     if !files.contains(file) {
         files.push(file.clone());
     }
-}
-
-/// The date and time of day, or what `SOURCE_DATE_EPOCH` says, so that a run can be repeated to the byte.
-fn now() -> String {
-    let fixed = env::var("SOURCE_DATE_EPOCH")
-        .ok()
-        .and_then(|seconds| seconds.parse().ok())
-        .map(|seconds| UNIX_EPOCH + Duration::from_secs(seconds));
-    let now = fixed.unwrap_or_else(SystemTime::now);
-    humantime::format_rfc3339_millis(now).to_string()
 }
