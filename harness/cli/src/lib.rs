@@ -9,6 +9,7 @@ mod day;
 mod embedded;
 mod exit;
 mod glob;
+mod history;
 mod input;
 mod journal;
 mod library;

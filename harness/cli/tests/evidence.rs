@@ -235,3 +235,18 @@ fn report_for_programs_keeps_its_schema() {
         assert_eq!(report["run"]["settings"][0]["value"], "4711");
     }
 }
+
+#[test]
+fn report_that_is_kept_as_an_example_is_sealed_and_can_be_made_again() {
+    let example = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reports/example");
+    let folder = Folder::new();
+    let mut check = folder.command_of("sha256sum", &["--check", "--quiet", "SHA256SUMS"]);
+    assert!(check.current_dir(&example).status().unwrap().success());
+    folder.write(
+        "reports/run.jsonl",
+        fs::read(example.join("run.jsonl")).unwrap(),
+    );
+    let ran = folder.run(&["report"]);
+    assert_eq!(ran.exit(), Some(1), "{}", ran.error());
+    assert!(ran.out().contains("3 of 22 did not pass"), "{}", ran.out());
+}

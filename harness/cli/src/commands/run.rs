@@ -14,6 +14,7 @@ use serde::Serialize;
 use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::exit::Exit;
+use crate::history::History;
 use crate::journal::RunJournal;
 use crate::library::{Device, Library};
 use crate::operator::Operator;
@@ -40,9 +41,13 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     let stop = stop::on_interrupt()?;
     let started = Instant::now();
     let start = head::run_started(&devices, &plan, options)?;
+    let history = match Screen::shows_progress() && devices.iter().any(|it| !it.is_simulated()) {
+        true => History::read(&options.reports),
+        false => History::default(),
+    };
     let journal = RunJournal::open(&options.reports, &start, stop)?;
     reports::clear(&options.reports)?;
-    let stage = stage(&devices, &plan, options, screen);
+    let stage = stage(&devices, &plan, options, history, screen);
     let played = lanes::play(&devices, &plan, &journal, &stage, stop);
     let (summaries, screen) = stage.leave();
     let written = played
@@ -70,6 +75,13 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     written.map(|_| exit)
 }
 
+/// The cases that are played on `device`.
+fn ids(device: &Device, plan: &Plan) -> Vec<String> {
+    let ids = device.suites.iter().flat_map(|suite| suite.cases());
+    let ids = ids.map(|case| case.id());
+    ids.filter(|id| plan.selects(id)).collect()
+}
+
 fn planned(devices: &[&Device], plan: &Plan) -> usize {
     let suites = devices.iter().flat_map(|device| plan.suites(device));
     suites.map(|(_, cases)| cases).sum()
@@ -85,6 +97,7 @@ fn stage<'s>(
     devices: &[&Device],
     plan: &Plan,
     options: &RunOptions,
+    history: History,
     screen: &'s mut Screen,
 ) -> Stage<'s> {
     let cases = planned(devices, plan);
@@ -97,13 +110,14 @@ fn stage<'s>(
         ink: INK,
     };
     let moves = text && !options.quiet && Screen::shows_progress();
-    Stage::new(
-        &names,
-        console,
-        Progress::new(cases as u64, moves),
-        text,
-        screen,
-    )
+    let progress = Progress::of_run(cases as u64, moves, history);
+    for (lane, device) in devices.iter().enumerate() {
+        if moves && !device.is_simulated() {
+            let ids: Vec<String> = ids(device, plan);
+            progress.plan(lane, device.name(), ids.iter().map(String::as_str));
+        }
+    }
+    Stage::new(&names, console, progress, text, screen)
 }
 
 #[derive(Serialize)]

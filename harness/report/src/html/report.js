@@ -185,6 +185,7 @@
     filter.hidden = false;
     apply();
     list.setAttribute("aria-busy", "false");
+    performance.mark("ready");
     follow();
   };
 

@@ -68,6 +68,7 @@ impl<'s> Stage<'s> {
 struct LaneSink<'a, 's> {
     stage: &'a Stage<'s>,
     lane: usize,
+    device: String,
     journal: LaneJournal,
 }
 
@@ -76,8 +77,14 @@ impl Sink for LaneSink<'_, '_> {
         // What is shown is kept already.
         self.journal.write(&event);
         if Console::wants(&event) {
-            if matches!(event, Event::CaseFinished(_)) {
-                self.stage.progress.step();
+            match &event {
+                Event::LaneStarted(lane) => self.device.clone_from(&lane.device),
+                Event::CaseStarted(case) => self.stage.progress.begins(&self.device, &case.id),
+                Event::CaseFinished(case) => {
+                    let progress = &self.stage.progress;
+                    progress.finished(self.lane, &self.device, &case.id);
+                }
+                _ => {}
             }
             self.stage.show(|console| console.event(self.lane, &event));
         }
@@ -96,6 +103,7 @@ pub(super) fn play(
         let mut sink = LaneSink {
             stage,
             lane,
+            device: device.name().to_owned(),
             journal: journal.lane(lane, !device.is_simulated()),
         };
         let played = player::play(device, plan, &mut sink, stop);
