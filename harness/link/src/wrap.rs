@@ -62,6 +62,8 @@ pub enum LineFault {
 pub struct FaultyLine {
     lane: Box<dyn Lane>,
     port: PortIndex,
+    /// Connections that were opened beside it.
+    connections: Vec<PortIndex>,
     fault: LineFault,
     /// Frames or characters that came through the port.
     count: u32,
@@ -89,11 +91,16 @@ impl FaultyLine {
         FaultyLine {
             lane,
             port,
+            connections: Vec::new(),
             fault,
             count: 0,
             sent: 0,
             held: VecDeque::new(),
         }
+    }
+
+    fn is_bad(&self, port: PortIndex) -> bool {
+        port == self.port || self.connections.contains(&port)
     }
 
     /// Holds the arrival as the bad line lets it through, if it does.
@@ -201,7 +208,7 @@ impl Lane for FaultyLine {
         at: Instant,
         what: Transmission,
     ) -> Result<Sent, LinkError> {
-        let what = match port == self.port {
+        let what = match self.is_bad(port) {
             true => self.deafen(what),
             false => what,
         };
@@ -214,7 +221,7 @@ impl Lane for FaultyLine {
             // No further than what is held, so that what comes before it is seen first.
             let limit = due.map_or(until, |due| due.min(until));
             match self.lane.receive(limit)? {
-                Some(arrival) if arrival.port == self.port && arrival.origin == Origin::Bus => {
+                Some(arrival) if self.is_bad(arrival.port) && arrival.origin == Origin::Bus => {
                     self.take(arrival);
                 }
                 Some(arrival) => return Ok(Some(arrival)),
@@ -253,7 +260,11 @@ impl Lane for FaultyLine {
     }
 
     fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
-        self.lane.connect(port, name)
+        let opened = self.lane.connect(port, name)?;
+        if port == self.port {
+            self.connections.push(opened);
+        }
+        Ok(opened)
     }
 
     fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
