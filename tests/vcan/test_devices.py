@@ -110,7 +110,7 @@ class OnVcan(FoldersAndRuns):
         self.assertIn("vcan0" if "vcan0" in str(run.outcome) else "can", str(run.lane("kinco")["stopped"]))
         self.assertGreater(run.lane("kinco")["counts"]["pass"], 0)
         journal = next(run.reports.glob("**/*.jsonl")).read_text(encoding="utf-8").splitlines()
-        self.assertEqual(json.loads(journal[-1])["event"], "lane-finished")
+        self.assertEqual(json.loads(journal[-2])["event"], "lane-finished")
         self.assertTrue(list(run.reports.glob("**/*.xml")), "there is no JUnit report")
 
     def test_an_error_frame_is_an_event_of_the_run(self) -> None:

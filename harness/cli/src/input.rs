@@ -8,6 +8,8 @@ use fieldproof_dictionary::eds;
 use fieldproof_report::{Problem, Severity};
 use fieldproof_suite::SourceFile;
 
+use crate::reports::manifest::sha256;
+
 /// A larger file is not read: no suite is that large.
 const LARGEST_BYTES: u64 = 16 * 1024 * 1024;
 /// Folders below folders are followed so far, in case they go in a circle.
@@ -59,11 +61,12 @@ pub(crate) fn read(path: &Path) -> Result<SourceFile, Box<Problem>> {
     }
 }
 
-/// Reads the EDS at `path`, which may be ISO 8859-1, as vendors have it.
-pub(crate) fn read_eds(path: &Path) -> Result<SourceFile, Box<Problem>> {
-    let text = eds::decode(&read_bytes(path)?);
+/// Reads the EDS at `path`, which may be ISO 8859-1, as vendors have it; and the SHA-256 of its bytes.
+pub(crate) fn read_eds(path: &Path) -> Result<(String, SourceFile), Box<Problem>> {
+    let bytes = read_bytes(path)?;
+    let text = eds::decode(&bytes);
     let path = path.display().to_string();
-    Ok(SourceFile { path, text })
+    Ok((sha256(&bytes), SourceFile { path, text }))
 }
 
 /// Every `*.yaml` and `*.yml` below `folder`, sorted by path. Links to folders are not followed.

@@ -5,10 +5,13 @@ mod bench;
 mod commands;
 mod complaint;
 mod control;
+mod day;
 mod embedded;
 mod exit;
 mod glob;
+mod history;
 mod input;
+mod journal;
 mod library;
 mod line_trouble;
 mod links;
@@ -23,6 +26,7 @@ mod screen;
 mod select;
 mod stimulus_words;
 mod stop;
+mod waivers;
 
 pub use bench::{Behaviour, NotConnected};
 pub use complaint::Complaint;
@@ -30,9 +34,10 @@ pub use exit::Exit;
 pub use library::{Device, Library, Place};
 pub use operator::Operator;
 pub use options::{
-    AddressList, BusOptions, CheckOptions, Color, Command, EdsCheckOptions, EdsCommand, EffectName,
-    Format, ListOptions, NewDeviceOptions, Options, ProveOptions, RunOptions, ScanOptions,
-    SchemaKind, Selection, ServeOptions, StimulateOptions,
+    AddressList, BusOptions, CheckOptions, Color, Command, CompareFormat, CompareOptions,
+    EdsCheckOptions, EdsCommand, EffectName, Format, KeyValue, ListOptions, NewDeviceOptions,
+    Options, ProveOptions, ReportOptions, RunOptions, ScanOptions, SchemaKind, Selection,
+    ServeOptions, StimulateOptions,
 };
 pub use player::{Plan, play};
 
@@ -43,6 +48,8 @@ pub fn main(options: &Options) -> Exit {
     let mut screen = Screen::new(options.color);
     let done = match &options.command {
         Command::Run(options) => commands::run::run(options, &mut screen),
+        Command::Compare(options) => commands::compare::compare(options, &mut screen),
+        Command::Report(options) => commands::report::report(options, &mut screen),
         Command::List(options) => commands::list::list(options, &mut screen),
         Command::Check(options) => commands::check::check(options, &mut screen),
         Command::Eds {

@@ -14,6 +14,7 @@ use fieldproof_devices::{DeviceKind, Fault, Medium, Variant};
 use fieldproof_dictionary::Dictionary;
 use fieldproof_dictionary::eds::{self, Eds};
 use fieldproof_dictionary::registers::RegisterMap;
+use fieldproof_record::UsedFile;
 use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_run::{Known, fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
@@ -28,6 +29,7 @@ use crate::embedded;
 use crate::input;
 use crate::options::Selection;
 use crate::problems;
+use crate::reports::manifest::sha256;
 use benches::is_bench;
 use catalogues::is_catalogue;
 
@@ -47,6 +49,8 @@ pub struct Device {
     pub bit_rates_kbit_per_s: BTreeSet<u32>,
     /// The reference device of that name; without one, the device cannot be simulated.
     pub kind: Option<&'static DeviceKind>,
+    /// The files it is described in.
+    pub files: Vec<UsedFile>,
     /// Where a bench has it.
     pub place: Option<Place>,
     /// The suites it is tested with, of those that are asked for, filled from its dictionary.
@@ -241,6 +245,16 @@ fn is_register_map(file: &SourceFile) -> bool {
     file.text.lines().any(|line| line.starts_with("registers:"))
 }
 
+const EDS: &str = "EDS";
+
+fn used(kind: &str, file: &SourceFile) -> UsedFile {
+    UsedFile {
+        kind: kind.to_owned(),
+        path: file.path.clone(),
+        sha256: sha256(file.text.as_bytes()),
+    }
+}
+
 /// In so many lines the head of a suite is looked for.
 const HEAD_LINES: u32 = 100;
 
@@ -431,13 +445,15 @@ impl Reader {
         };
         let kind = fieldproof_devices::kind(&description.device);
         self.ports(&description, kind, &file.path);
+        let mut files = vec![used("device description", file)];
         let (dictionary, bit_rates) = description
             .canopen
             .as_ref()
             .and_then(|canopen| self.eds(folder, &canopen.eds))
-            .map(|(eds, path)| {
-                let contradictions = identity::contradictions(&description, file, &eds, &path);
+            .map(|(eds, it)| {
+                let contradictions = identity::contradictions(&description, file, &eds, &it.path);
                 self.problems.extend(contradictions);
+                files.push(it);
                 (eds.dictionary, eds.device_info.bit_rates_kbit_per_s)
             })
             .unzip();
@@ -445,7 +461,7 @@ impl Reader {
             .modbus
             .as_ref()
             .and_then(|modbus| modbus.registers.as_ref());
-        let registers = map.and_then(|map| self.register_map(folder, map));
+        let registers = map.and_then(|map| self.register_map(folder, map, &mut files));
         self.described.insert(description.device.clone());
         Some(Device {
             description,
@@ -453,6 +469,7 @@ impl Reader {
             registers,
             bit_rates_kbit_per_s: bit_rates.unwrap_or_default(),
             kind,
+            files,
             place: None,
             suites: Vec::new(),
         })
@@ -504,14 +521,16 @@ impl Reader {
         }
     }
 
-    /// The EDS beside a description, and its path.
-    fn eds(&mut self, folder: &Folder, name: &str) -> Option<(Eds, String)> {
+    /// The EDS beside a description, and which file it is.
+    fn eds(&mut self, folder: &Folder, name: &str) -> Option<(Eds, UsedFile)> {
         let file = match folder {
             Folder::OnDisk(folder) => input::read_eds(&folder.join(name)),
-            Folder::Embedded(_) => folder.file(name),
+            Folder::Embedded(_) => folder
+                .file(name)
+                .map(|file| (used(EDS, &file).sha256, file)),
         };
         match file {
-            Ok(file) => {
+            Ok((sha256, file)) => {
                 let read = eds::read(&file.text);
                 let text = Arc::from(file.text);
                 let findings = read
@@ -519,7 +538,12 @@ impl Reader {
                     .iter()
                     .map(|it| problems::of_used_finding(it, &file.path, &text));
                 self.problems.extend(findings);
-                Some((read, file.path))
+                let used = UsedFile {
+                    kind: EDS.to_owned(),
+                    path: file.path,
+                    sha256,
+                };
+                Some((read, used))
             }
             Err(problem) => {
                 self.problems.push(*problem);
@@ -528,9 +552,17 @@ impl Reader {
         }
     }
 
-    fn register_map(&mut self, folder: &Folder, name: &str) -> Option<RegisterMap> {
+    fn register_map(
+        &mut self,
+        folder: &Folder,
+        name: &str,
+        files: &mut Vec<UsedFile>,
+    ) -> Option<RegisterMap> {
         match folder.file(name) {
-            Ok(file) => self.registers(&file),
+            Ok(file) => {
+                files.push(used("register map", &file));
+                self.registers(&file)
+            }
             Err(problem) => {
                 self.problems.push(*problem);
                 None

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, value_parser};
+use fieldproof_record::Setting;
 use fieldproof_run::effect_name;
 use fieldproof_suite::model::{Depth, Effect};
 
@@ -31,6 +32,10 @@ const EXIT_CODES: &str = "Exit codes:
 pub enum Command {
     /// Play suites against devices and write reports
     Run(RunOptions),
+    /// Make all reports again from the journal of a run, finished or not
+    Report(ReportOptions),
+    /// Put two runs side by side: what fails now, what no more, which times have moved
+    Compare(CompareOptions),
     /// List the cases of the suites
     List(ListOptions),
     /// Read and check suites and device descriptions; play nothing
@@ -143,12 +148,89 @@ pub struct RunOptions {
     /// Where reports are written.
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub reports: PathBuf,
+    /// Something to be said in the reports: `operator`, `order`, `serial`, `firmware` or whatever else; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<KeyValue>,
     /// Show every case with its verdict and time, and deviations in full.
     #[arg(long, short)]
     pub verbose: bool,
     /// Show only what did not pass, and the summary.
     #[arg(long, short, conflicts_with = "verbose")]
     pub quiet: bool,
+    /// How to print the outcome.
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}
+
+/// `operator=A. Smith`
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeyValue(pub Setting);
+
+impl std::str::FromStr for KeyValue {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<KeyValue, String> {
+        let (key, value) = text
+            .split_once('=')
+            .ok_or("expected a key, = and a value")?;
+        let (key, value) = (key.trim(), value.trim());
+        if key.is_empty() || key.chars().any(char::is_control) {
+            return Err("the key is empty".to_owned());
+        }
+        Ok(KeyValue(Setting {
+            key: key.to_owned(),
+            value: value.to_owned(),
+        }))
+    }
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+#[command(after_help = COMPARE_EXIT_CODES)]
+pub struct CompareOptions {
+    /// The reports of the run before: the folder, or its journal.
+    #[arg(value_name = "OLD")]
+    pub old: PathBuf,
+    /// The reports of the run after.
+    #[arg(value_name = "NEW")]
+    pub new: PathBuf,
+    /// Accepted failures, each with a reason and the day it expires.
+    #[arg(long, value_name = "FILE")]
+    pub waivers: Option<PathBuf>,
+    /// Documented deviations are failures.
+    #[arg(long)]
+    pub strict: bool,
+    /// A measurement that has become slower is a regression, too.
+    #[arg(long)]
+    pub fail_on_slower: bool,
+    /// How to print it.
+    #[arg(long, default_value = "text")]
+    pub format: CompareFormat,
+}
+
+const COMPARE_EXIT_CODES: &str = "Exit codes:
+  0  no worse than before
+  1  a case fails that did not, or a waiver that is needed has expired
+  2  the input was wrong
+  3  no worse as far as it goes, but the new run did not come to its end";
+
+/// How a comparison is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CompareFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+    /// A page.
+    Html,
+}
+
+/// Options of `report`.
+#[derive(Debug, Args)]
+pub struct ReportOptions {
+    /// The folder with the journal, `run.jsonl`.
+    #[arg(value_name = "DIR", default_value = "reports")]
+    pub folder: PathBuf,
     /// How to print the outcome.
     #[arg(long, default_value = "text")]
     pub format: Format,
@@ -428,6 +510,12 @@ pub enum SchemaKind {
     Catalogue,
     /// One line of a journal.
     Journal,
+    /// The report for programs, `report.json`.
+    Report,
+    /// What `compare --format json` prints.
+    Comparison,
+    /// A file of accepted failures.
+    Waivers,
 }
 
 /// How thorough a run is.

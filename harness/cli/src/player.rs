@@ -33,6 +33,8 @@ pub struct Plan {
     pub strict: bool,
     /// Whether the device is opened after each case to see that it is as it was found.
     pub inspects_device: bool,
+    /// Whether the record is to stand for itself, for reports.
+    pub explains: bool,
     /// How the reference device is built.
     pub behaviour: Behaviour,
     /// Who is asked for stimuli on real links.
@@ -49,6 +51,7 @@ impl Default for Plan {
             depth: Depth::Full,
             strict: false,
             inspects_device: true,
+            explains: false,
             behaviour: Behaviour::default(),
             operator: Operator::none(),
         }
@@ -110,6 +113,7 @@ pub fn play(
         selects: &|id| plan.selects(id),
         strict: plan.strict,
         inspects_device: plan.inspects_device,
+        explains: plan.explains,
         fault: behaviour.fault.as_deref(),
         variant: behaviour.variant.as_deref(),
         seed: behaviour.seed,

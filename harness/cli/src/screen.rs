@@ -35,9 +35,9 @@ impl Screen {
         }
     }
 
-    /// Whether a progress bar makes sense.
+    /// Whether a progress bar makes sense: on a terminal that somebody looks at. Build machines offer terminals, too.
     pub(crate) fn shows_progress() -> bool {
-        io::stderr().is_terminal()
+        io::stderr().is_terminal() && std::env::var_os("CI").is_none()
     }
 
     /// Prints `text` as it is.

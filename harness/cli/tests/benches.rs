@@ -101,7 +101,7 @@ fn device_has_the_node_of_the_bench() {
     let journal = folder
         .files()
         .into_iter()
-        .find(|file| file.contains("left") && file.ends_with(".jsonl"))
+        .find(|file| file.ends_with("run.jsonl"))
         .map(|file| folder.read(&file))
         .unwrap();
     assert!(journal.contains("\"id\":1801"), "{journal}");

@@ -1,11 +1,12 @@
 //! A hundred thousand cases in one suite, played with all reports in 200 MB of memory.
 
 #![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod support;
 
 use std::process::Command;
+use std::time::Instant;
 
 use quick_junit::Report;
 use support::{Folder, suite};
@@ -37,6 +38,18 @@ fn hundred_thousand_cases_stay_below_200_megabytes() {
     assert_eq!(ran.status.code(), Some(0), "{error}");
     let report = Report::deserialize_from_str(&folder.read("reports/junit.xml")).unwrap();
     assert_eq!(report.tests, CASES);
+    let started = Instant::now();
+    let made = Command::new("sh")
+        .arg("-c")
+        .arg(format!("ulimit -d {LIMIT_KIB} && exec \"$0\" report"))
+        .arg(program)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(made.status.code(), Some(0));
+    println!("all reports were made in {:.1?}", started.elapsed());
+    let page = folder.read("reports/report.html");
+    assert!(page.len() < 5_000_000, "{} bytes", page.len());
 }
 
 #[test]

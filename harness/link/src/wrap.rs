@@ -62,8 +62,8 @@ pub enum LineFault {
 pub struct FaultyLine {
     lane: Box<dyn Lane>,
     port: PortIndex,
-    /// Connections that were opened from there.
-    further: Vec<PortIndex>,
+    /// Connections that were opened beside it.
+    connections: Vec<PortIndex>,
     fault: LineFault,
     /// Frames or characters that came through the port.
     count: u32,
@@ -91,12 +91,16 @@ impl FaultyLine {
         FaultyLine {
             lane,
             port,
-            further: Vec::new(),
+            connections: Vec::new(),
             fault,
             count: 0,
             sent: 0,
             held: VecDeque::new(),
         }
+    }
+
+    fn is_bad(&self, port: PortIndex) -> bool {
+        port == self.port || self.connections.contains(&port)
     }
 
     /// Holds the arrival as the bad line lets it through, if it does.
@@ -152,10 +156,6 @@ impl FaultyLine {
         Frame::data(frame.id(), copy).unwrap_or(frame)
     }
 
-    fn is_faulty(&self, port: PortIndex) -> bool {
-        port == self.port || self.further.contains(&port)
-    }
-
     /// What is on the line when the tester sends `what`.
     fn deafen(&mut self, what: Transmission) -> Transmission {
         let LineFault::Deafen { every } = self.fault else {
@@ -208,7 +208,7 @@ impl Lane for FaultyLine {
         at: Instant,
         what: Transmission,
     ) -> Result<Sent, LinkError> {
-        let what = match self.is_faulty(port) {
+        let what = match self.is_bad(port) {
             true => self.deafen(what),
             false => what,
         };
@@ -221,7 +221,7 @@ impl Lane for FaultyLine {
             // No further than what is held, so that what comes before it is seen first.
             let limit = due.map_or(until, |due| due.min(until));
             match self.lane.receive(limit)? {
-                Some(arrival) if self.is_faulty(arrival.port) && arrival.origin == Origin::Bus => {
+                Some(arrival) if self.is_bad(arrival.port) && arrival.origin == Origin::Bus => {
                     self.take(arrival);
                 }
                 Some(arrival) => return Ok(Some(arrival)),
@@ -260,16 +260,17 @@ impl Lane for FaultyLine {
     }
 
     fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
-        let connection = self.lane.connect(port, name)?;
+        let opened = self.lane.connect(port, name)?;
         if port == self.port {
-            self.further.push(connection);
+            self.connections.push(opened);
         }
-        Ok(connection)
+        Ok(opened)
     }
 
     fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
-        self.further.retain(|it| *it != port);
-        self.held.retain(|held| held.port != port);
+        self.connections.retain(|it| *it != port);
+        self.held
+            .retain(|held| held.port != port || port == self.port);
         self.lane.disconnect(port, how)
     }
 

@@ -32,6 +32,10 @@ pub enum Event {
     CaseStarted(Box<CaseStarted>),
     /// A step begins.
     StepStarted(StepStarted),
+    /// What the device says of itself, read before the first case.
+    Identity(Box<Identity>),
+    /// The case is over, and what it changed is put back.
+    PuttingBack(PuttingBack),
     /// A CAN frame was sent or received.
     Frame(FrameEvent),
     /// A serial frame (bytes between silences) was sent or received.
@@ -72,8 +76,6 @@ pub struct PortInfo {
 /// See [`Event::LaneStarted`].
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LaneStarted {
-    /// The journal's format version.
-    pub format: u32,
     /// `fieldproof 0.1.0`
     pub tool: String,
     /// The device's name in the bench.
@@ -88,6 +90,37 @@ pub struct LaneStarted {
     pub seed: u64,
     /// The ports.
     pub ports: Vec<PortInfo>,
+}
+
+/// See [`Event::Identity`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Identity {
+    /// When all was read.
+    pub at_ns: u64,
+    /// What was asked for.
+    pub parts: Vec<IdentityPart>,
+}
+
+/// One thing that a device says of itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct IdentityPart {
+    /// `vendor-id`, `software-version`.
+    pub name: String,
+    /// Where it is read: `1018h:01`, `identification object 02h`.
+    pub object: String,
+    /// What the device says.
+    pub read: Option<String>,
+    /// Why it said nothing: `refused with 06020000h`.
+    pub unread: Option<String>,
+    /// What its description claims.
+    pub described: Option<String>,
+}
+
+impl IdentityPart {
+    /// Whether the device says what its description claims; `None` where one of them says nothing.
+    pub fn agrees(&self) -> Option<bool> {
+        Some(self.read.as_ref()? == self.described.as_ref()?)
+    }
 }
 
 /// See [`Event::SuiteStarted`].
@@ -131,8 +164,27 @@ pub struct CaseStarted {
     pub examples: Vec<String>,
     /// What it does to the device.
     pub effects: Vec<String>,
+    /// Its control and its steps, as the suite file has them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<WrittenStep>,
     /// Where it stands.
     pub place: Place,
+}
+
+/// A step as the suite file has it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct WrittenStep {
+    /// Its line.
+    pub line: u32,
+    /// Whether it belongs to the control.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub control: bool,
+    /// Its text, without the indentation that it stands under.
+    pub text: String,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// A place in a suite file, with the text of its line, so that a report needs no suite at hand.
@@ -161,6 +213,13 @@ pub struct StepStarted {
     pub at_ns: u64,
 }
 
+/// See [`Event::PuttingBack`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct PuttingBack {
+    /// When.
+    pub at_ns: u64,
+}
+
 /// From where to where.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -175,7 +234,7 @@ pub enum Direction {
 
 /// See [`Event::Frame`]. The bytes at and after `len` are zero. In the journal `data` is hexadecimal, and only a remote
 /// frame gives its length by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(into = "FrameLine", try_from = "FrameLine")]
 pub struct FrameEvent {
     /// The end of its last bit.
@@ -194,6 +253,8 @@ pub struct FrameEvent {
     pub len: u8,
     /// The data.
     pub data: [u8; 8],
+    /// What it means, with the names that the device's dictionary gives.
+    pub decoded: Option<Box<str>>,
 }
 
 /// See [`Event::Serial`].
@@ -213,6 +274,9 @@ pub struct SerialEvent {
     pub bytes: Vec<u8>,
     /// Whether a character was spoilt (parity, framing).
     pub spoilt: bool,
+    /// What it means.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decoded: Option<Box<str>>,
 }
 
 /// See [`Event::BusError`].

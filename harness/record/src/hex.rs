@@ -49,6 +49,9 @@ pub(crate) struct FrameLine {
     #[serde(with = "HexBytes")]
     #[schemars(with = "HexBytes")]
     data: Vec<u8>,
+    /// What it means.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    decoded: Option<Box<str>>,
 }
 
 impl From<FrameEvent> for FrameLine {
@@ -65,6 +68,7 @@ impl From<FrameEvent> for FrameLine {
                 true => Vec::new(),
                 false => frame.data[..used].to_vec(),
             },
+            decoded: frame.decoded,
         }
     }
 }
@@ -92,6 +96,7 @@ impl TryFrom<FrameLine> for FrameEvent {
             remote: line.remote.is_some(),
             len: u8::try_from(len).unwrap_or(8),
             data,
+            decoded: line.decoded,
         })
     }
 }

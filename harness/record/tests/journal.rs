@@ -3,34 +3,57 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fieldproof_record::{
-    CaseFinished, CaseStarted, Cite, Direction, Event, ExcerptLine, FORMAT, Failure, FrameEvent,
-    Journal, JournalError, LaneFinished, LaneStarted, Limits, Measurement, Note, Observation,
-    Place, PortInfo, SerialEvent, Sink, StepStarted, StimulusEvent, SuiteFinished, SuiteStarted,
-    Verdict, VerdictCounts, journal_schema, read_journal, write_event,
+    CaseFinished, CaseStarted, Cite, Direction, Entry, Event, ExcerptLine, FORMAT, Failure,
+    FrameEvent, Identity, IdentityPart, Journal, JournalError, JournalReader, LaneFinished,
+    LaneStarted, Limits, Measurement, Note, Observation, Place, PlannedLane, PortInfo, PuttingBack,
+    RunFinished, RunStarted, SerialEvent, Setting, Sink, StepStarted, StimulusEvent, SuiteFinished,
+    SuiteStarted, UsedFile, Verdict, VerdictCounts, WrittenStep, journal_schema, read_journal,
 };
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
 
-fn start() -> Event {
-    Event::LaneStarted(Box::new(LaneStarted {
+fn start() -> Entry {
+    Entry::RunStarted(Box::new(RunStarted {
         format: FORMAT,
         tool: "fieldproof 0.1.0".to_owned(),
-        device: "kinco-servo".to_owned(),
-        title: "Kinco servo drive".to_owned(),
-        fault: None,
-        variant: None,
+        started: "2026-11-22T21:36:29Z".to_owned(),
+        arguments: vec!["run".to_owned()],
+        settings: vec![Setting {
+            key: "operator".to_owned(),
+            value: "A. Smith".to_owned(),
+        }],
+        bench: None,
+        strict: false,
+        depth: "default".to_owned(),
         seed: u64::MAX,
-        ports: Vec::new(),
+        files: vec![UsedFile {
+            kind: "suite".to_owned(),
+            path: "a.yaml".to_owned(),
+            sha256: "00".repeat(32),
+        }],
+        lanes: vec![PlannedLane {
+            device: "kinco-servo".to_owned(),
+            cases: 1,
+            simulated: true,
+            files: Vec::new(),
+        }],
     }))
 }
 
-fn written(events: &[Event]) -> Vec<u8> {
-    let mut journal = Journal::new(Vec::new());
-    for event in events {
-        journal.emit(event.clone());
+fn written(entries: &[Entry]) -> Vec<u8> {
+    let mut journal = Vec::new();
+    for entry in entries {
+        entry.write(&mut journal).unwrap();
     }
-    journal.finish().unwrap()
+    journal
+}
+
+/// Everything that a journal has, its start first.
+fn all(journal: &[u8]) -> Result<Vec<Entry>, JournalError> {
+    let (start, entries) = read_journal(journal)?;
+    let start = Entry::RunStarted(Box::new(start));
+    Ok(std::iter::once(start).chain(entries).collect())
 }
 
 #[test]
@@ -44,11 +67,12 @@ fn frame_is_one_short_line() {
         remote: false,
         len: 4,
         data: [0x43, 0x00, 0x10, 0x00, 0, 0, 0, 0],
+        decoded: None,
     });
     assert_eq!(
-        String::from_utf8(written(&[frame])).unwrap(),
+        String::from_utf8(written(&[Entry::Lane(3, frame)])).unwrap(),
         concat!(
-            r#"{"event":"frame","at_ns":1234,"port":0,"direction":"received","id":1409,"data":"43001000"}"#,
+            r#"{"lane":3,"event":"frame","at_ns":1234,"port":0,"direction":"received","id":1409,"data":"43001000"}"#,
             "\n"
         )
     );
@@ -72,7 +96,7 @@ fn frame_of_nine_bytes_is_refused() {
 #[test]
 fn line_in_the_middle_that_is_no_event_is_an_error() {
     let mut journal = written(&[start()]);
-    journal.extend_from_slice(b"{\"event\":\"coffee\"}\n");
+    journal.extend_from_slice(b"{\"lane\":0,\"event\":\"coffee\"}\n");
     journal.extend(written(&[start()]));
     let Err(JournalError::Line { line, reason }) = read_journal(&journal) else {
         panic!("it was read");
@@ -85,9 +109,10 @@ fn line_in_the_middle_that_is_no_event_is_an_error() {
 fn schema_refuses_what_is_no_event() {
     let schema = jsonschema::validator_for(&journal_schema()).unwrap();
     for line in [
-        r#"{"event":"coffee"}"#,
-        r#"{"event":"frame","at_ns":0,"port":0,"direction":"sent","id":1,"data":[1]}"#,
-        r#"{"event":"frame","at_ns":0,"port":0,"direction":"sent","id":1,"data":"0"}"#,
+        r#"{"lane":0,"event":"coffee"}"#,
+        r#"{"event":"frame","at_ns":0,"port":0,"direction":"sent","id":1,"data":"00"}"#,
+        r#"{"lane":0,"event":"frame","at_ns":0,"port":0,"direction":"sent","id":1,"data":[1]}"#,
+        r#"{"lane":0,"event":"frame","at_ns":0,"port":0,"direction":"sent","id":1,"data":"0"}"#,
     ] {
         let value = serde_json::from_str(line).unwrap();
         assert!(!schema.is_valid(&value), "{line}");
@@ -97,23 +122,70 @@ fn schema_refuses_what_is_no_event() {
 #[test]
 fn journal_of_another_format_is_refused() {
     let journal = String::from_utf8(written(&[start()])).unwrap();
-    let journal = journal.replace("\"format\":1", "\"format\":2");
-    assert_eq!(
+    let journal = journal.replace("\"format\":2", "\"format\":1");
+    assert!(matches!(
         read_journal(journal.as_bytes()),
-        Err(JournalError::Format(2))
-    );
+        Err(JournalError::Format(1))
+    ));
 }
 
 #[test]
 fn text_that_is_no_journal_is_refused() {
-    assert_eq!(read_journal(b""), Err(JournalError::NoStart));
-    assert_eq!(read_journal(b"{\"ev"), Err(JournalError::NoStart));
     let step = Event::StepStarted(StepStarted {
         step: 0,
         line: 1,
         at_ns: 0,
     });
-    assert_eq!(read_journal(&written(&[step])), Err(JournalError::NoStart));
+    for journal in [
+        b"".to_vec(),
+        b"{\"ev".to_vec(),
+        written(&[Entry::Lane(0, step)]),
+    ] {
+        assert!(matches!(read_journal(&journal), Err(JournalError::NoStart)));
+    }
+}
+
+#[test]
+fn lane_is_read_without_the_others() {
+    let note = |lane, at_ns| {
+        let text = "a line".to_owned();
+        Entry::Lane(lane, Event::Note(Box::new(Note { at_ns, text })))
+    };
+    let end = Entry::RunFinished(RunFinished {
+        finished: "2026-11-22T21:36:30Z".to_owned(),
+    });
+    let entries = [
+        start(),
+        note(0, 1),
+        note(12, 2),
+        note(1, 3),
+        note(1, 4),
+        end,
+    ];
+    let journal = written(&entries);
+    let mut reader = JournalReader::new(journal.as_slice()).unwrap();
+    let mut read = Vec::new();
+    while let Some(entry) = reader.entry(Some(1)).unwrap() {
+        read.push(entry);
+    }
+    assert_eq!(read, entries[3..]);
+}
+
+#[test]
+fn lines_in_another_order_are_read_as_well() {
+    let mut journal = written(&[start()]);
+    journal.extend_from_slice(b"{\"at_ns\":5,\"event\":\"putting-back\",\"lane\":1}\n");
+    let entry = Entry::Lane(1, Event::PuttingBack(PuttingBack { at_ns: 5 }));
+    assert_eq!(all(&journal).unwrap()[1..], [entry]);
+    let mut reader = JournalReader::new(journal.as_slice()).unwrap();
+    assert_eq!(reader.entry(Some(0)).unwrap(), None);
+}
+
+#[test]
+fn bytes_that_a_machine_left_behind_when_it_died_are_left_out() {
+    let mut journal = written(&[start()]);
+    journal.extend_from_slice(b"\0\0\0\0\n");
+    assert_eq!(all(&journal).unwrap(), [start()]);
 }
 
 #[test]
@@ -127,8 +199,8 @@ fn writer_that_fails_is_told_at_the_end() {
             Ok(())
         }
     }
-    let mut journal = Journal::new(Full);
-    journal.emit(start());
+    let mut journal = Journal::new(Full, 0);
+    journal.emit(Event::PuttingBack(PuttingBack { at_ns: 0 }));
     let error = journal.finish().map(|_| ()).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::StorageFull);
 }
@@ -172,13 +244,13 @@ prop_compose! {
 prop_compose! {
     fn frame()(
         at_ns: u64, port: u8, direction in direction(), id: u32, extended: bool, remote: bool,
-        bytes in vec(any::<u8>(), 0..=8),
+        bytes in vec(any::<u8>(), 0..=8), decoded in option::of(text()),
     ) -> FrameEvent {
         let mut data = [0; 8];
         if !remote {
             data[..bytes.len()].copy_from_slice(&bytes);
         }
-        FrameEvent { at_ns, port, direction, id, extended, remote, len: bytes.len() as u8, data }
+        FrameEvent { at_ns, port, direction, id, extended, remote, len: bytes.len() as u8, data, decoded: decoded.map(Into::into) }
     }
 }
 
@@ -204,9 +276,11 @@ prop_compose! {
     fn case_started()(
         (id, written_id, title) in (text(), text(), text()), at_ns: u64,
         cites in vec(cite(), 0..3), against in vec(cite(), 0..2), because in option::of(text()),
-        examples in vec(text(), 0..3), effects in vec(text(), 0..3), place in place(),
+        (examples, effects) in (vec(text(), 0..3), vec(text(), 0..3)),
+        steps in vec((any::<u32>(), any::<bool>(), text()), 0..3), place in place(),
     ) -> CaseStarted {
-        CaseStarted { id, written_id, title, at_ns, cites, against, because, examples, effects, place }
+        let steps = steps.into_iter().map(|(line, control, text)| WrittenStep { line, control, text });
+        CaseStarted { id, written_id, title, at_ns, cites, against, because, examples, effects, steps: steps.collect(), place }
     }
 }
 
@@ -233,9 +307,9 @@ prop_compose! {
 prop_compose! {
     fn serial()(
         at_ns: u64, start_ns: u64, port: u8, direction in direction(),
-        bytes in vec(any::<u8>(), 0..300), spoilt: bool,
+        bytes in vec(any::<u8>(), 0..300), spoilt: bool, decoded in option::of(text()),
     ) -> SerialEvent {
-        SerialEvent { at_ns, start_ns, port, direction, bytes, spoilt }
+        SerialEvent { at_ns, start_ns, port, direction, bytes, spoilt, decoded: decoded.map(Into::into) }
     }
 }
 
@@ -247,7 +321,7 @@ prop_compose! {
         let ports = ports.into_iter().map(|(name, link, line, timestamps, uncertainty_ns)| {
             PortInfo { name, link, line, timestamps, uncertainty_ns }
         });
-        LaneStarted { format: FORMAT, tool, device, title, fault: fault.clone(), variant: fault, seed, ports: ports.collect() }
+        LaneStarted { tool, device, title, fault: fault.clone(), variant: fault, seed, ports: ports.collect() }
     }
 }
 
@@ -263,6 +337,22 @@ fn event() -> impl Strategy<Value = Event> {
             line,
             at_ns
         })),
+        (
+            any::<u64>(),
+            vec((text(), text(), option::of(text())), 0..3)
+        )
+            .prop_map(|(at_ns, parts)| {
+                let parts = parts.into_iter().map(|(name, object, read)| IdentityPart {
+                    name,
+                    object,
+                    unread: read.clone(),
+                    described: read.clone(),
+                    read,
+                });
+                let parts = parts.collect();
+                Event::Identity(Box::new(Identity { at_ns, parts }))
+            }),
+        any::<u64>().prop_map(|at_ns| Event::PuttingBack(PuttingBack { at_ns })),
         frame().prop_map(Event::Frame),
         serial().prop_map(|it| Event::Serial(Box::new(it))),
         (any::<u64>(), text())
@@ -291,30 +381,31 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
-fn journal_events() -> impl Strategy<Value = Vec<Event>> {
-    vec(event(), 0..12).prop_map(|events| std::iter::once(start()).chain(events).collect())
+fn entries() -> impl Strategy<Value = Vec<Entry>> {
+    let entry = (any::<u32>(), event()).prop_map(|(lane, event)| Entry::Lane(lane, event));
+    vec(entry, 0..12).prop_map(|entries| std::iter::once(start()).chain(entries).collect())
 }
 
 proptest! {
     #[test]
-    fn what_is_written_is_read(events in journal_events()) {
-        prop_assert_eq!(read_journal(&written(&events)), Ok(events));
+    fn what_is_written_is_read(entries in entries()) {
+        prop_assert_eq!(all(&written(&entries)).unwrap(), entries);
     }
 
     #[test]
     fn every_event_is_one_line(event in event()) {
-        let line = written(&[event]);
+        let line = written(&[Entry::Lane(0, event)]);
         prop_assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
         prop_assert_eq!(line.last(), Some(&b'\n'));
     }
 
     #[test]
-    fn cut_off_journal_gives_the_events_before(events in journal_events(), cut in any::<prop::sample::Index>()) {
-        let whole = written(&events);
-        let first = written(&events[..1]).len();
+    fn cut_off_journal_gives_the_entries_before(entries in entries(), cut in any::<prop::sample::Index>()) {
+        let whole = written(&entries);
+        let first = written(&entries[..1]).len();
         let end = first + cut.index(whole.len() - first + 1);
-        let complete = read_journal(&whole[..end]).unwrap();
-        prop_assert_eq!(&complete[..], &events[..complete.len()]);
+        let complete = all(&whole[..end]).unwrap();
+        prop_assert_eq!(&complete[..], &entries[..complete.len()]);
         // A line is lost only if its end is: even a last line without its line feed is read.
         let lines = whole[..end].iter().filter(|byte| **byte == b'\n').count();
         prop_assert!(complete.len() == lines || complete.len() == lines + 1);
@@ -323,6 +414,9 @@ proptest! {
     #[test]
     fn arbitrary_bytes_are_no_reason_to_panic(bytes in vec(any::<u8>(), 0..400)) {
         prop_assert!(read_journal(&bytes).is_err());
+        let mut journal = written(&[start()]);
+        journal.extend(bytes);
+        let _ = read_journal(&journal);
     }
 
     #[test]
@@ -330,9 +424,9 @@ proptest! {
         thread_local! {
             static SCHEMA: jsonschema::Validator = jsonschema::validator_for(&journal_schema()).unwrap();
         }
-        let mut line = Vec::new();
-        write_event(&mut line, &event).unwrap();
-        let value = serde_json::from_slice(&line).unwrap();
-        SCHEMA.with(|schema| schema.validate(&value).map_err(|error| error.to_string())).unwrap();
+        for entry in [start(), Entry::Lane(7, event)] {
+            let value = serde_json::from_slice(&written(&[entry])).unwrap();
+            SCHEMA.with(|schema| schema.validate(&value).map_err(|error| error.to_string())).unwrap();
+        }
     }
 }

@@ -8,7 +8,8 @@ use std::borrow::Cow;
 use std::io::{self, Read, Write};
 
 use fieldproof_record::{
-    CaseFinished, CaseStarted, Event, LaneStarted, Limits, Measurement, Place, Verdict,
+    CaseFinished, CaseStarted, Event, IdentityPart, LaneStarted, Limits, Measurement, Place,
+    Verdict,
 };
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event as Xml};
@@ -33,6 +34,7 @@ pub struct JunitLane<W: Write> {
     out: Writer<Counted<W>>,
     strict: bool,
     lane: Option<Box<LaneStarted>>,
+    identity: Vec<IdentityPart>,
     heads: Vec<SuiteHead>,
     /// The name of the suite that is being played.
     suite: String,
@@ -53,6 +55,7 @@ impl<W: Write> JunitLane<W> {
             out: Writer::new(Counted { out, bytes: 0 }),
             strict,
             lane: None,
+            identity: Vec::new(),
             heads: Vec::new(),
             suite: String::new(),
             case: None,
@@ -115,7 +118,9 @@ impl<W: Write> JunitLane<W> {
                     .unwrap_or_else(|| unannounced(&finished.id));
                 self.case(case, finished)?;
             }
+            Event::Identity(identity) => self.identity = identity.parts.clone(),
             Event::StepStarted(_)
+            | Event::PuttingBack(_)
             | Event::Frame(_)
             | Event::Serial(_)
             | Event::Stimulus(_)
@@ -159,6 +164,11 @@ impl<W: Write> JunitLane<W> {
                 (format!("port.{}", port.name), value)
             }));
         }
+        let read = self.identity.iter().filter_map(|part| {
+            let value = part.read.clone()?;
+            Some((format!("identity.{}", part.name), value))
+        });
+        properties.extend(read);
         let before = self.out.get_ref().bytes;
         write_properties(&mut self.out, 2, &properties)?;
         self.count_bytes(before);
@@ -170,6 +180,28 @@ impl<W: Write> JunitLane<W> {
         if let Some(head) = self.heads.last_mut() {
             head.bytes += written;
         }
+    }
+
+    /// The lane ended before its last case: that is an error, whatever the cases before came to.
+    ///
+    /// # Errors
+    /// What the output says.
+    pub fn ended_early(&mut self, why: &str) -> io::Result<()> {
+        if let Some(error) = self.failed.take() {
+            return Err(error);
+        }
+        self.abandoned_case()?;
+        self.begin_suite("the run", "Whether everything was played")?;
+        let finished = CaseFinished {
+            id: "the run/came to its end".to_owned(),
+            at_ns: 0,
+            duration_ns: 0,
+            verdict: Verdict::Error,
+            reason: Some(why.to_owned()),
+            failures: Vec::new(),
+            excerpt: Vec::new(),
+        };
+        self.case(unannounced(&finished.id), &finished)
     }
 
     fn abandoned_case(&mut self) -> io::Result<()> {
@@ -303,6 +335,7 @@ fn unannounced(id: &str) -> Case {
         because: None,
         examples: Vec::new(),
         effects: Vec::new(),
+        steps: Vec::new(),
         place: Place::default(),
     };
     Case {

@@ -117,6 +117,15 @@ const COLUMNS: [Verdict; 6] = [
 /// The end of a run: devices against verdicts, and what there is to say about the ones that did not pass. With
 /// `strict`, a documented deviation counts as a failure.
 pub fn summary_text(lanes: &[LaneSummary], wall: Duration, strict: bool, ink: Ink) -> String {
+    text_of(lanes, Some(wall), strict, ink)
+}
+
+/// The same of a run that is read from its journal.
+pub fn left_text(lanes: &[LaneSummary], strict: bool, ink: Ink) -> String {
+    text_of(lanes, None, strict, ink)
+}
+
+fn text_of(lanes: &[LaneSummary], wall: Option<Duration>, strict: bool, ink: Ink) -> String {
     let mut text = "\n".to_owned();
     text.push_str(&table(lanes, ink));
     skipped(&mut text, lanes);
@@ -248,7 +257,7 @@ fn list(
 fn last_line(
     text: &mut String,
     lanes: &[LaneSummary],
-    wall: Duration,
+    wall: Option<Duration>,
     is_trouble: impl Fn(Verdict) -> bool,
     ink: Ink,
 ) {
@@ -273,11 +282,17 @@ fn last_line(
         ),
     };
     let lane_time = short_seconds(lane_time(lanes));
-    let wall = wall.as_secs_f64();
     say(
         text,
-        format_args!("\n{words}: {lane_time} on the lanes' clocks, played in {wall:.2} s\n"),
+        format_args!("\n{words}: {lane_time} on the lanes' clocks"),
     );
+    if let Some(wall) = wall {
+        say(
+            text,
+            format_args!(", played in {:.2} s", wall.as_secs_f64()),
+        );
+    }
+    text.push('\n');
 }
 
 /// Milliseconds are enough for people.

@@ -84,6 +84,7 @@ fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,
@@ -108,6 +109,6 @@ fn every_event_written_to_a_journal(bencher: Bencher) {
         let Ok(file) = tempfile::tempfile() else {
             panic!("no temporary file")
         };
-        play(&suites, &device, Journal::new(BufWriter::new(file)))
+        play(&suites, &device, Journal::new(BufWriter::new(file), 0))
     });
 }

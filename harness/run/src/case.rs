@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use fieldproof_link::SerialSettings;
-use fieldproof_record::{Event, ExcerptLine, Failure, Note, Place, StepStarted, Verdict};
+use fieldproof_record::{
+    Event, ExcerptLine, Failure, Note, Place, PuttingBack, StepStarted, Verdict,
+};
 use fieldproof_suite::Position;
 use fieldproof_suite::device::Instead;
 use fieldproof_suite::model::{Case, Located, NmtState, Step};
@@ -96,6 +98,8 @@ impl Tester<'_> {
             self.find(&mut findings, stop, None, place(case.at), Part::Steps);
         }
         if !findings.link_is_down {
+            let at_ns = self.session.now().as_nanos();
+            self.session.emit(Event::PuttingBack(PuttingBack { at_ns }));
             let put_back = self
                 .let_late_answers_pass(&findings)
                 .and_then(|()| self.session.disconnect_all())

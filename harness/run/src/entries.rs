@@ -2,10 +2,10 @@
 
 use fieldproof_link::{Framing, Lane, Line, Parity, StateDifference, StopBits};
 use fieldproof_record::{
-    CaseFinished, CaseStarted, Cite, FORMAT, Failure, LaneStarted, Place, PortInfo, Verdict,
+    CaseFinished, CaseStarted, Cite, Failure, LaneStarted, Place, PortInfo, Verdict, WrittenStep,
 };
-use fieldproof_suite::CaseRef;
-use fieldproof_suite::model::{Case, Citation};
+use fieldproof_suite::model::{Case, Citation, Located, Step};
+use fieldproof_suite::{CaseRef, Environment};
 
 use crate::applies::effect_name;
 use crate::lane::LaneJob;
@@ -22,6 +22,7 @@ fn unread(case: &CaseRef<'_>, title: &str, place: Place, at_ns: u64) -> CaseStar
         because: None,
         examples: Vec::new(),
         effects: Vec::new(),
+        steps: Vec::new(),
         place,
     }
 }
@@ -98,7 +99,6 @@ pub(crate) fn left_changed(differences: &[StateDifference], at_ns: u64, place: P
 /// The first entry of a lane.
 pub(crate) fn lane_started(job: &LaneJob<'_>, lane: &dyn Lane) -> LaneStarted {
     LaneStarted {
-        format: FORMAT,
         tool: job.tool.to_owned(),
         device: job.name.to_owned(),
         title: job.device.title.clone(),
@@ -145,7 +145,12 @@ fn show_line(line: Line) -> String {
 }
 
 /// The first entry of a case.
-pub(crate) fn case_started(case: &Case, at_ns: u64, place: Place) -> CaseStarted {
+pub(crate) fn case_started(
+    case: &Case,
+    at_ns: u64,
+    place: Place,
+    steps: Vec<WrittenStep>,
+) -> CaseStarted {
     CaseStarted {
         id: case.id.clone(),
         written_id: case.written_id.clone(),
@@ -160,8 +165,49 @@ pub(crate) fn case_started(case: &Case, at_ns: u64, place: Place) -> CaseStarted
             .iter()
             .map(|effect| effect_name(*effect).to_owned())
             .collect(),
+        steps,
         place,
     }
+}
+
+/// The control and the steps of `case` as its file has them.
+pub(crate) fn written_steps(
+    of: &CaseRef<'_>,
+    environment: &Environment,
+    case: &Case,
+) -> Vec<WrittenStep> {
+    let written = |step: &Located<Step>, control| WrittenStep {
+        line: step.at.line,
+        control,
+        text: text_of_item(of, environment, step.at.line),
+    };
+    let control = case.control.iter().map(|step| written(step, true));
+    let steps = case.steps.iter().map(|step| written(step, false));
+    control.chain(steps).collect()
+}
+
+/// The longest step that is shown in full, in lines.
+const LONGEST_STEP: u32 = 24;
+
+/// The item of a list that begins on `line`, without its dash and indentation.
+fn text_of_item(of: &CaseRef<'_>, environment: &Environment, line: u32) -> String {
+    let suite = of.suite();
+    let first = suite.line_text(line);
+    let indent = first.len() - first.trim_start().len();
+    let item = first.trim_start();
+    let item = item.strip_prefix("- ").unwrap_or(item);
+    let mut text = of.written_out(item.trim_end(), environment).into_owned();
+    for line in line + 1..line + LONGEST_STEP {
+        let more = suite.line_text(line);
+        let inside = more.len() - more.trim_start().len() > indent;
+        if !inside {
+            break;
+        }
+        text.push('\n');
+        let more = more.get(indent + 2..).unwrap_or(more.trim()).trim_end();
+        text.push_str(&of.written_out(more, environment));
+    }
+    text
 }
 
 fn cites(citations: &[Citation]) -> Vec<Cite> {

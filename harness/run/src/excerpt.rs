@@ -1,16 +1,12 @@
 //! The frames around a failure, decoded.
 
-use fieldproof_can::{Frame, Id};
 use fieldproof_dictionary::Dictionary;
-use fieldproof_link::{Framing, Line, PortIndex};
-use fieldproof_record::{Direction, ExcerptLine, FrameEvent};
-use fieldproof_wire::describe::{
-    Direction as ModbusDirection, describe_frame, describe_modbus, describe_modbus_tcp,
-};
+use fieldproof_link::PortIndex;
+use fieldproof_record::ExcerptLine;
 
 use crate::modbus::show_bytes;
-use crate::object_names::object_names;
 use crate::session::{Session, Traffic};
+use crate::words::{can_words, frame_of, serial_words};
 
 /// How many frames before the failure are shown.
 const LINES: usize = 12;
@@ -39,61 +35,22 @@ fn line(session: &Session<'_>, dictionary: Option<&Dictionary>, traffic: &Traffi
                 direction: event.direction,
                 raw: frame.map(|frame| frame.to_string()).unwrap_or_default(),
                 decoded: frame
-                    .map(|frame| describe(&frame, dictionary))
+                    .map(|frame| can_words(&frame, dictionary))
                     .unwrap_or_default(),
                 marked: false,
             }
         }
         Traffic::Serial(event) => {
-            // On the device's own port the tester is the master; behind a gateway the device is.
-            let from_master = match event.direction {
-                Direction::Sent => true,
-                Direction::Companion => false,
-                Direction::Received => {
-                    let name = session.port_name(PortIndex(event.port.into()));
-                    name != crate::tester::SERIAL && name != crate::tester::TCP
-                }
-            };
-            let direction = if from_master {
-                ModbusDirection::Request
-            } else {
-                ModbusDirection::Response
-            };
+            let index = PortIndex(event.port.into());
+            let port = session.port_name(index);
             ExcerptLine {
                 at_ns: event.at_ns,
-                port: session.port_name(PortIndex(event.port.into())).to_owned(),
+                port: port.to_owned(),
                 direction: event.direction,
                 raw: show_bytes(&event.bytes),
-                decoded: match session.line(PortIndex(event.port.into())) {
-                    Line::Stream(Framing::ModbusTcp) => {
-                        describe_modbus_tcp(&event.bytes, direction)
-                    }
-                    _ => describe_modbus(&event.bytes, direction),
-                },
+                decoded: serial_words(event, port, session.line(index)),
                 marked: false,
             }
         }
-    }
-}
-
-fn frame_of(event: &FrameEvent) -> Option<Frame> {
-    let id = if event.extended {
-        Id::extended(event.id)
-    } else {
-        Id::standard(event.id as u16)
-    }?;
-    if event.remote {
-        Frame::remote(id, event.len)
-    } else {
-        Frame::data(id, event.data.get(..usize::from(event.len))?)
-    }
-}
-
-/// The frame in words, with the names of its objects where the dictionary knows them.
-fn describe(frame: &Frame, dictionary: Option<&Dictionary>) -> String {
-    let words = describe_frame(frame);
-    match dictionary.and_then(|dictionary| object_names(frame, &words, dictionary)) {
-        Some(names) => format!("{words}  [{names}]"),
-        None => words,
     }
 }

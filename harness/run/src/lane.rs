@@ -26,6 +26,7 @@ use crate::stop::Stop;
 use crate::tester::{DEVICE_TYPE, Tester};
 use crate::undo::UndoStack;
 use crate::value::Saved;
+use crate::words::Explaining;
 
 /// Everything about a lane that does not change while it is played.
 pub struct LaneJob<'a> {
@@ -48,6 +49,8 @@ pub struct LaneJob<'a> {
     /// Whether the device is opened after each case to see that it is as it was found, where a lane can do that
     /// ([`Lane::device_state`]).
     pub inspects_device: bool,
+    /// Whether the record is to stand for itself: who the device says it is, the steps of each case, frames in words.
+    pub explains: bool,
     /// The fault switched on in a reference device, for the record.
     pub fault: Option<&'a str>,
     /// The legal variant that a reference device is, for the record.
@@ -90,8 +93,19 @@ pub fn play_lane(
     sink.emit(Event::LaneStarted(Box::new(entries::lane_started(
         job, lane,
     ))));
+    let mut explaining;
+    let sink: &mut dyn Sink = match job.explains {
+        true => {
+            explaining = Explaining::new(sink, job.dictionary, lane);
+            &mut explaining
+        }
+        false => sink,
+    };
     let mut player = Player::new(job, lane, sink, stop);
     player.find_device();
+    if job.explains {
+        player.tester.read_identity();
+    }
     for suite in suites_for(job.suites, job.device) {
         if player.outcome.stopped.is_some() {
             break;
@@ -267,21 +281,15 @@ impl<'a> Player<'a> {
         if let Some(absent) = case.absent() {
             return self.pass_over(case, place(case.at()), absent);
         }
-        let mut case = match case.lower(&self.environment) {
+        let written = case;
+        let mut case = match written.lower(&self.environment) {
             Ok(case) => case,
-            Err(diagnostics) => return self.refuse(case, place(case.at()), &diagnostics),
+            Err(diagnostics) => return self.refuse(written, place(case.at()), &diagnostics),
         };
         if let Some(node) = self.tester.node {
             relocate(&mut case, node);
         }
         let started_ns = self.tester.session.now().as_nanos();
-        self.tester
-            .session
-            .emit(Event::CaseStarted(Box::new(entries::case_started(
-                &case,
-                started_ns,
-                place(case.at),
-            ))));
         let skipped = skip_reason(
             &case,
             suite.head.protocol,
@@ -289,6 +297,14 @@ impl<'a> Player<'a> {
             self.job.dictionary,
             self.job.bench,
         );
+        let steps = match self.job.explains && skipped.is_none() {
+            true => entries::written_steps(written, &self.environment, &case),
+            false => Vec::new(),
+        };
+        let started = entries::case_started(&case, started_ns, place(case.at), steps);
+        self.tester
+            .session
+            .emit(Event::CaseStarted(Box::new(started)));
         let outcome = match &skipped {
             Some(_) => CaseOutcome::skipped(),
             None => self.play_and_inspect(&case, &place),

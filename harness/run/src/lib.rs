@@ -11,6 +11,7 @@ mod companions;
 mod entries;
 mod excerpt;
 mod find;
+mod identity;
 mod lane;
 mod limits;
 mod modbus;
@@ -32,6 +33,7 @@ mod tester;
 mod undo;
 mod unexpected;
 mod value;
+mod words;
 
 pub use applies::{Bench, effect_name, feature_name, skip_reason};
 pub use find::{Known, fill, fill_some};

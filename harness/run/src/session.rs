@@ -307,6 +307,7 @@ impl<'a> Session<'a> {
             direction: Direction::Sent,
             bytes,
             spoilt,
+            decoded: None,
         });
         Ok(sent)
     }
@@ -486,6 +487,7 @@ impl<'a> Session<'a> {
             direction,
             bytes: frame.bytes.clone(),
             spoilt: frame.spoilt,
+            decoded: None,
         });
         Received {
             at: frame.end,
@@ -517,8 +519,9 @@ impl<'a> Session<'a> {
             remote: frame.is_remote(),
             len: frame.len() as u8,
             data,
+            decoded: None,
         };
-        self.remember(Traffic::Can(event));
+        self.remember(Traffic::Can(event.clone()));
         self.sink.emit(Event::Frame(event));
     }
 

@@ -26,12 +26,15 @@ mod read;
 mod read_with;
 pub mod scalar;
 mod schema;
+pub mod waivers;
 mod yaml;
 
 pub use diagnostic::{Diagnostic, Position, Severity};
 pub use expand::Environment;
 pub use load::{
     CaseRef, Columns, Loaded, SourceFile, Suite, load, load_bench, load_catalogue, load_device,
-    load_registers, unknown_checks, unknown_entries,
+    load_registers, load_waivers, unknown_checks, unknown_entries,
 };
-pub use schema::{bench_schema, catalogue_schema, device_schema, registers_schema, schema};
+pub use schema::{
+    bench_schema, catalogue_schema, device_schema, registers_schema, schema, waivers_schema,
+};

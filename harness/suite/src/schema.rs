@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::catalogue::Catalogue;
 use crate::file::{BenchFile, DeviceFile, RegistersFile, SuiteFile};
+use crate::waivers::Waivers;
 
 /// The JSON Schema (draft 2020-12) of suite files.
 pub fn schema() -> Value {
@@ -59,6 +60,13 @@ pub fn bench_schema() -> Value {
 /// The JSON Schema (draft 2020-12) of catalogues.
 pub fn catalogue_schema() -> Value {
     let mut schema = generator().into_root_schema_for::<Catalogue>().to_value();
+    widen_scalars(&mut schema);
+    schema
+}
+
+/// The JSON Schema (draft 2020-12) of files of accepted failures.
+pub fn waivers_schema() -> Value {
+    let mut schema = generator().into_root_schema_for::<Waivers>().to_value();
     widen_scalars(&mut schema);
     schema
 }

@@ -213,11 +213,12 @@ fn engine(address: SocketAddr, suites: &[Suite]) -> Duration {
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,
     };
-    let mut journal = Journal::new(BufWriter::new(tempfile::tempfile().unwrap()));
+    let mut journal = Journal::new(BufWriter::new(tempfile::tempfile().unwrap()), 0);
     let started = Instant::now();
     let outcome = play_lane(&job, &mut lane, &mut journal, &AtomicBool::new(false));
     let took = started.elapsed();

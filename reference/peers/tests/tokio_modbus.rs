@@ -301,6 +301,7 @@ fn play_on(port: Box<dyn Port>, device: DeviceDescription, chapters: &[&str]) ->
         selects: &|id| !HANGS.iter().any(|case| id.starts_with(case)),
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,

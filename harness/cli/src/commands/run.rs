@@ -1,5 +1,6 @@
 //! `fieldproof run`
 
+mod head;
 mod lanes;
 mod preview;
 
@@ -13,14 +14,15 @@ use serde::Serialize;
 use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::exit::Exit;
+use crate::history::History;
+use crate::journal::RunJournal;
 use crate::library::{Device, Library};
 use crate::operator::Operator;
 use crate::options::{EFFECTS, Format, RunOptions};
 use crate::player::Plan;
 use crate::progress::Progress;
-use crate::reports::Reports;
 use crate::screen::{INK, Screen};
-use crate::{object_faults, select, stop};
+use crate::{object_faults, reports, select, stop};
 use lanes::Stage;
 
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
@@ -38,13 +40,21 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
     select::must_be_simulated(&devices)?;
     let stop = stop::on_interrupt()?;
     let started = Instant::now();
-    let reports = Reports::open(&options.reports)?;
-    let stage = stage(&devices, &plan, options, screen);
-    let lanes = lanes::play(&devices, &plan, &reports, &stage, stop);
+    let start = head::run_started(&devices, &plan, options)?;
+    let history = match Screen::shows_progress() && devices.iter().any(|it| !it.is_simulated()) {
+        true => History::read(&options.reports),
+        false => History::default(),
+    };
+    let journal = RunJournal::open(&options.reports, &start, stop)?;
+    reports::clear(&options.reports)?;
+    let stage = stage(&devices, &plan, options, history, screen);
+    let played = lanes::play(&devices, &plan, &journal, &stage, stop);
     let (summaries, screen) = stage.leave();
-    let written = lanes.and_then(|lanes| reports.junit(lanes));
+    let written = played
+        .and_then(|()| journal.finish(head::run_finished()))
+        .and_then(|()| reports::make(&options.reports));
     let exit = match &written {
-        Ok(()) => Exit::of_run(&summaries, options.strict),
+        Ok(_) => Exit::of_run(&summaries, options.strict),
         Err(complaint) => complaint.exit,
     };
     let outcome = RunOutcome {
@@ -62,7 +72,14 @@ pub(crate) fn run(options: &RunOptions, screen: &mut Screen) -> Result<Exit, Com
         options,
         screen,
     );
-    written.map(|()| exit)
+    written.map(|_| exit)
+}
+
+/// The cases that are played on `device`.
+fn ids(device: &Device, plan: &Plan) -> Vec<String> {
+    let ids = device.suites.iter().flat_map(|suite| suite.cases());
+    let ids = ids.map(|case| case.id());
+    ids.filter(|id| plan.selects(id)).collect()
 }
 
 fn planned(devices: &[&Device], plan: &Plan) -> usize {
@@ -80,6 +97,7 @@ fn stage<'s>(
     devices: &[&Device],
     plan: &Plan,
     options: &RunOptions,
+    history: History,
     screen: &'s mut Screen,
 ) -> Stage<'s> {
     let cases = planned(devices, plan);
@@ -92,13 +110,14 @@ fn stage<'s>(
         ink: INK,
     };
     let moves = text && !options.quiet && Screen::shows_progress();
-    Stage::new(
-        &names,
-        console,
-        Progress::new(cases as u64, moves),
-        text,
-        screen,
-    )
+    let progress = Progress::of_run(cases as u64, moves, history);
+    for (lane, device) in devices.iter().enumerate() {
+        if moves && !device.is_simulated() {
+            let ids: Vec<String> = ids(device, plan);
+            progress.plan(lane, device.name(), ids.iter().map(String::as_str));
+        }
+    }
+    Stage::new(&names, console, progress, text, screen)
 }
 
 #[derive(Serialize)]
@@ -146,6 +165,7 @@ fn plan(options: &RunOptions) -> Plan {
         depth: options.depth.into(),
         strict: options.strict,
         inspects_device: true,
+        explains: true,
         behaviour: Behaviour {
             fault: options.fault.clone(),
             variant: options.variant.clone(),

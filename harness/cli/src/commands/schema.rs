@@ -13,6 +13,9 @@ pub(crate) fn schema(kind: SchemaKind, screen: &mut Screen) -> Result<Exit, Comp
         SchemaKind::Registers => fieldproof_suite::registers_schema(),
         SchemaKind::Bench => fieldproof_suite::bench_schema(),
         SchemaKind::Catalogue => fieldproof_suite::catalogue_schema(),
+        SchemaKind::Waivers => fieldproof_suite::waivers_schema(),
+        SchemaKind::Comparison => fieldproof_report::compare::comparison_schema(),
+        SchemaKind::Report => fieldproof_report::report_schema(),
         SchemaKind::Journal => fieldproof_record::journal_schema(),
     };
     screen.print_json(&schema);

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use fieldproof_record::{Entry, RunStarted, read_journal};
 use tempfile::TempDir;
 
 /// A folder that is gone afterwards.
@@ -34,6 +35,11 @@ impl Folder {
         fs::read_to_string(self.path().join(path)).unwrap()
     }
 
+    /// The journal of the run whose reports are in `reports`.
+    pub(crate) fn journal(&self) -> (RunStarted, Vec<Entry>) {
+        read_journal(self.read("reports/run.jsonl").as_bytes()).unwrap()
+    }
+
     /// The program, about to be run here. Nothing from outside decides on colours.
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_fieldproof"));
@@ -41,6 +47,13 @@ impl Folder {
         for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "COLUMNS"] {
             command.env_remove(name);
         }
+        command
+    }
+
+    /// Another program, about to be run here.
+    pub(crate) fn command_of(&self, program: &str, arguments: &[&str]) -> Command {
+        let mut command = Command::new(program);
+        command.args(arguments).current_dir(self.path());
         command
     }
 

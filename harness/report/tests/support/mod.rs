@@ -3,14 +3,13 @@
 #![allow(dead_code, reason = "each test uses some of it")]
 
 use fieldproof_record::{
-    CaseFinished, CaseStarted, Cite, Direction, Event, ExcerptLine, FORMAT, Failure, LaneFinished,
+    CaseFinished, CaseStarted, Cite, Direction, Event, ExcerptLine, Failure, LaneFinished,
     LaneStarted, Limits, Measurement, Observation, Place, PortInfo, SuiteFinished, SuiteStarted,
     Verdict, VerdictCounts,
 };
 
 pub(crate) fn lane_started(device: &str) -> Event {
     Event::LaneStarted(Box::new(LaneStarted {
-        format: FORMAT,
         tool: "fieldproof 0.1.0".to_owned(),
         device: device.to_owned(),
         title: "A drive".to_owned(),
@@ -59,6 +58,7 @@ pub(crate) fn case_started(id: &str) -> CaseStarted {
         because: None,
         examples: vec!["drive-007".to_owned()],
         effects: vec!["writes".to_owned()],
+        steps: Vec::new(),
         place: place(),
     }
 }

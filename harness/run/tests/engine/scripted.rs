@@ -287,6 +287,7 @@ impl Setup {
             selects: &|_| true,
             strict: false,
             inspects_device: false,
+            explains: false,
             fault: None,
             variant: None,
             seed: 0,

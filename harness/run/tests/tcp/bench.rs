@@ -203,6 +203,7 @@ pub(crate) fn play(
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,

@@ -11,7 +11,9 @@ mod fill;
 mod registers;
 mod rows;
 mod suite;
+mod waivers;
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -21,8 +23,9 @@ pub use catalogue::{load_catalogue, unknown_entries};
 pub use device::{load_device, unknown_checks};
 pub use fill::Columns;
 pub use registers::load_registers;
+pub use waivers::load_waivers;
 
-use crate::expand::Environment;
+use crate::expand::{Environment, Notation, Scope};
 use crate::lines::Lines;
 use crate::model::{Case, SuiteHead};
 use crate::node::Node;
@@ -187,6 +190,21 @@ impl<'a> CaseRef<'a> {
     pub fn title_as_written(&self) -> &'a str {
         let title = self.template.body.get("title").and_then(Node::text);
         title.unwrap_or_default()
+    }
+
+    /// A line of its file for people: with what its placeholders stand for, as far as that is known beforehand.
+    pub fn written_out<'t>(&self, line: &'t str, environment: &Environment) -> Cow<'t, str> {
+        let scope = Scope {
+            row: self.row,
+            environment: *environment,
+            ..Scope::default()
+        };
+        let notation = match line.contains('#') {
+            true => Notation::Hex,
+            false => Notation::Text,
+        };
+        let out = scope.replace(line, notation, false);
+        out.unwrap_or(Cow::Borrowed(line))
     }
 
     /// Where it stands in its file: its row, or its name.

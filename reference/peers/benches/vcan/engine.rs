@@ -98,6 +98,7 @@ fn play(interface: &str, read: &Read, times: u32) -> f64 {
         selects: &|_| true,
         strict: false,
         inspects_device: false,
+        explains: false,
         fault: None,
         variant: None,
         seed: 0,
@@ -105,7 +106,7 @@ fn play(interface: &str, read: &Read, times: u32) -> f64 {
     let port = SocketCan::open("can", interface, 1_000_000, None).unwrap();
     let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
     let mut sink = Timed {
-        journal: Journal::new(BufWriter::new(tempfile::tempfile().unwrap())),
+        journal: Journal::new(BufWriter::new(tempfile::tempfile().unwrap()), 0),
         first_ns: None,
         last_ns: 0,
     };

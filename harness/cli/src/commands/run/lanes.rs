@@ -8,10 +8,10 @@ use fieldproof_record::{Event, Sink};
 use fieldproof_report::{Console, ConsoleOptions, LaneSummary};
 
 use crate::complaint::Complaint;
+use crate::journal::{LaneJournal, RunJournal};
 use crate::library::Device;
 use crate::player::{self, Plan};
 use crate::progress::Progress;
-use crate::reports::{LaneCases, LaneReports, Reports};
 use crate::screen::Screen;
 
 /// What all lanes show themselves on.
@@ -68,18 +68,26 @@ impl<'s> Stage<'s> {
 struct LaneSink<'a, 's> {
     stage: &'a Stage<'s>,
     lane: usize,
-    reports: LaneReports,
+    device: String,
+    journal: LaneJournal,
 }
 
 impl Sink for LaneSink<'_, '_> {
     fn emit(&mut self, event: Event) {
+        // What is shown is kept already.
+        self.journal.write(&event);
         if Console::wants(&event) {
-            if matches!(event, Event::CaseFinished(_)) {
-                self.stage.progress.step();
+            match &event {
+                Event::LaneStarted(lane) => self.device.clone_from(&lane.device),
+                Event::CaseStarted(case) => self.stage.progress.begins(&self.device, &case.id),
+                Event::CaseFinished(case) => {
+                    let progress = &self.stage.progress;
+                    progress.finished(self.lane, &self.device, &case.id);
+                }
+                _ => {}
             }
             self.stage.show(|console| console.event(self.lane, &event));
         }
-        self.reports.emit(event);
     }
 }
 
@@ -87,21 +95,21 @@ impl Sink for LaneSink<'_, '_> {
 pub(super) fn play(
     devices: &[&Device],
     plan: &Plan,
-    reports: &Reports,
+    journal: &RunJournal,
     stage: &Stage<'_>,
     stop: &AtomicBool,
-) -> Result<Vec<LaneCases>, Complaint> {
-    let play = |lane: usize, device: &Device| -> Result<LaneCases, Complaint> {
-        let reports = reports.lane(device.name(), plan.strict)?;
+) -> Result<(), Complaint> {
+    let play = |lane: usize, device: &Device| -> Result<(), Complaint> {
         let mut sink = LaneSink {
             stage,
             lane,
-            reports,
+            device: device.name().to_owned(),
+            journal: journal.lane(lane, !device.is_simulated()),
         };
         let played = player::play(device, plan, &mut sink, stop);
         stage.show(|console| console.end(lane));
         played.map_err(|error| Complaint::bench(error.to_string()))?;
-        sink.reports.finish()
+        Ok(())
     };
     thread::scope(|scope| {
         let play = &play;
@@ -113,13 +121,12 @@ pub(super) fn play(
         lanes
             .into_iter()
             .zip(devices)
-            .map(|(lane, device)| match lane.join() {
-                Ok(cases) => cases,
+            .try_for_each(|(lane, device)| match lane.join() {
+                Ok(played) => played,
                 Err(_) => Err(Complaint::bench(format!(
                     "the lane of {} broke down",
                     device.name()
                 ))),
             })
-            .collect()
     })
 }
