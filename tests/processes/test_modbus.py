@@ -66,6 +66,14 @@ class Modbus(FoldersAndRuns):
                 command = [PYTHON, DEVICE, kind, "--port", theirs, "--parity", "N"]
                 self.on_a_line(kind, command, f"serial:{ours}", least)
 
+    def test_everything_over_modbus_tcp(self) -> None:
+        kind = "modbus-complete"
+        link = f"tcp:127.0.0.1:{free_port()}"
+        device = Device(kind, kind, [FIELDPROOF, "serve", kind, "--on", link], {"tcp": link})
+        run = self.run_on([device], "modbus", f"{kind}.functions", "--no-operator")
+        self.assertEqual((run.exit, run.not_passed()), (0, {}), run.error)
+        self.assertGreaterEqual(run.lane(kind)["counts"]["pass"], 900, run.outcome)
+
     def test_devices_on_pymodbus_over_tcp(self) -> None:
         for kind, (_, least) in DEVICES.items():
             with self.subTest(kind):

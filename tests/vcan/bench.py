@@ -21,6 +21,10 @@ END_SECONDS = 20
 # What the scheduler of a busy machine does to every instant; the bus itself is a thousand times better.
 UNCERTAINTY = "10ms"
 
+# What our devices offer; a bench must not promise more.
+ALL_STIMULI = ["power", "process-value", "condition", "setting"]
+WITHOUT_CONDITIONS = ["liaomiao-encoder", "teco-inverter", "teco-jn5-cm-can"]
+
 
 @dataclass
 class Device:
@@ -51,7 +55,8 @@ class Device:
         if self.address is not None:
             lines.append(f"    address: {self.address}")
         if self.control is not None:
-            lines.append("    stimuli: [power, process-value, condition, setting]")
+            offered = [it for it in ALL_STIMULI if it != "condition" or self.kind not in WITHOUT_CONDITIONS]
+            lines.append(f"    stimuli: [{', '.join(offered)}]")
             lines.append(f'    stimulus-command: ["{FIELDPROOF}", stimulate, "{self.control}"]')
         lines.append(f"    permits: [{', '.join(self.permits)}]")
         return "\n".join(lines) + "\n"

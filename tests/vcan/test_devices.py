@@ -51,7 +51,10 @@ class OnVcan(FoldersAndRuns):
         for name, count in least.items():
             self.assertGreaterEqual(run.lane(name)["counts"]["pass"], count, (name, run.outcome["lanes"]))
             self.assertTrue(run.lane(name)["complete"], name)
-        again = run.not_passed()
+        # What this link is too coarse for stays undecided, as it should; it must not be much.
+        too_coarse = {key for key, what in run.not_passed().items() if what.endswith("cannot be decided on this link")}
+        self.assertLess(len(too_coarse), 20, too_coarse)
+        again = {key: what for key, what in run.not_passed().items() if key not in too_coarse}
         self.assertLess(len(again), 12, again)
         for name in {name for name, _ in again}:
             cases = [f"--case={case}" for device, case in again if device == name]

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use fieldproof_devices::inverter::Inverter;
-use fieldproof_devices::{Medium, Settings, UnknownFault};
+use fieldproof_devices::neighbour::Neighbour;
+use fieldproof_devices::{Medium, PortKind, Settings, UnknownFault};
 use fieldproof_link::real::{NoStimuli, OpenError, RealLane, Stimuli};
 use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_link::{
@@ -13,10 +14,11 @@ use fieldproof_link::{
 };
 use fieldproof_run::Bench;
 use fieldproof_suite::bench::{self, LinkKind};
-use fieldproof_suite::device::{self, PortDescription};
+use fieldproof_suite::device::{self, DeviceDescription, PortDescription};
 use fieldproof_suite::model::{Depth, Effect, StimulusName};
 
 use crate::library::{Device, Place};
+use crate::line_trouble::LineTrouble;
 use crate::links;
 use crate::operator::{ByCommand, ByHand, Operator};
 
@@ -29,6 +31,8 @@ pub struct Behaviour {
     pub variant: Option<String>,
     /// The seed of its response times.
     pub seed: u64,
+    /// What is wrong with the line between it and the tester.
+    pub line: Option<LineTrouble>,
 }
 
 /// Why a device could not be connected.
@@ -70,7 +74,13 @@ pub(crate) fn open(
             let lane = open_real(device, place, behaviour.seed, operator)?;
             Ok(Box::new(lane))
         }
-        _ => Ok(Box::new(connect(device, behaviour)?)),
+        _ => {
+            let lane = Box::new(connect(device, behaviour)?);
+            Ok(match behaviour.line {
+                Some(trouble) => trouble.between(lane),
+                None => lane,
+            })
+        }
     }
 }
 
@@ -151,7 +161,9 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
                 stop_bits,
                 ..
             }) => builder.serial_line(port.role, serial(*baud, *parity, *stop_bits)),
+            Some(PortDescription::Tcp { .. }) => builder.connection(port.role, Framing::ModbusTcp),
             None => match port.medium {
+                Medium::Tcp => builder.connection(port.role, Framing::ModbusTcp),
                 Medium::Can { bit_rate } => builder.can_bus(port.role, bit_rate),
                 Medium::Serial(settings) => builder.serial_line(port.role, settings),
             },
@@ -168,11 +180,27 @@ pub(crate) fn connect(device: &Device, behaviour: &Behaviour) -> Result<SimLane,
         }
     }
     builder.device(participant, &ports);
+    if behaviour.line == Some(LineTrouble::Neighbour) {
+        for (kind, port) in kind.ports.iter().zip(&ports) {
+            if let Some(bit_rate) = can_bit_rate(description, kind) {
+                builder.participant(Box::new(Neighbour::new(bit_rate)), &[*port]);
+            }
+        }
+    }
     let mut lane = builder.build();
     for (port, companion) in companions {
         lane.attach(port, companion);
     }
     Ok(lane)
+}
+
+/// What its CAN port is set to as the device leaves the factory, or as the description says.
+fn can_bit_rate(description: &DeviceDescription, kind: &PortKind) -> Option<u32> {
+    match (description.ports.get(kind.role), kind.medium) {
+        (Some(PortDescription::Can { bit_rate }), _) => Some(*bit_rate),
+        (None, Medium::Can { bit_rate }) => Some(bit_rate),
+        _ => None,
+    }
 }
 
 /// The companions that a description can name.
@@ -208,6 +236,7 @@ pub(crate) fn bench(device: &Device, lane: &dyn Lane, permits: &BTreeSet<Effect>
     Bench {
         fixed_rates: roles(|port| !port.sets_bit_rate),
         modbus_tcp: roles(|port| port.line == Line::Stream(Framing::ModbusTcp)),
+        streams: roles(|port| matches!(port.line, Line::Stream(_))),
         ..bench_of(device, ports, lane.offers().into_iter().collect(), permits)
     }
 }
@@ -244,13 +273,23 @@ fn bench_of(
         }
     }
     let description = &device.description;
-    let links = device.place.iter().flat_map(|place| &place.links);
-    let over_tcp = links.filter(|(_, link)| {
+    let links = || device.place.iter().flat_map(|place| &place.links);
+    let links_over_tcp = links()
+        .filter(|(_, link)| link.kind == LinkKind::Tcp)
+        .map(|(role, _)| role.clone())
+        .collect();
+    let over_tcp = links().filter(|(_, link)| {
         link.kind == LinkKind::Tcp && link.parameters.framing != Some(bench::Framing::Rtu)
     });
+    let over_tcp = over_tcp.map(|(role, _)| role);
+    let described = description.ports.iter();
+    let described = described.filter(|(_, port)| matches!(port, PortDescription::Tcp { .. }));
+    let described = described.map(|(role, _)| role);
+    let described = described.filter(|role| ports.contains(*role));
     Bench {
-        modbus_tcp: over_tcp.map(|(role, _)| role.clone()).collect(),
+        modbus_tcp: over_tcp.chain(described).cloned().collect(),
         ports,
+        streams: links_over_tcp,
         fixed_rates: BTreeSet::new(),
         stimuli,
         permits,

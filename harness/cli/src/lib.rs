@@ -13,6 +13,7 @@ mod history;
 mod input;
 mod journal;
 mod library;
+mod line_trouble;
 mod links;
 mod object_faults;
 mod operator;

@@ -503,7 +503,12 @@ impl Reader {
             };
             match (port, simulated.medium) {
                 (PortDescription::Can { .. }, Medium::Can { .. })
-                | (PortDescription::Serial { .. }, Medium::Serial(_)) => {}
+                | (PortDescription::Serial { .. }, Medium::Serial(_))
+                | (PortDescription::Tcp { .. }, Medium::Tcp) => {}
+                (_, Medium::Tcp) => {
+                    self.problems
+                        .push(fail(format!("the port \"{role}\" is one of Modbus TCP")));
+                }
                 (_, Medium::Can { .. }) => {
                     self.problems
                         .push(fail(format!("the port \"{role}\" is a CAN port")));

@@ -65,6 +65,13 @@ pub(crate) fn open(
             CONNECT_TIMEOUT,
             uncertainty,
         )?),
+        (LinkKind::Tcp, PortDescription::Tcp { .. }) => Box::new(Tcp::open(
+            role,
+            target,
+            Framing::ModbusTcp,
+            CONNECT_TIMEOUT,
+            uncertainty,
+        )?),
         _ => return Err(cannot_carry(link, role)),
     })
 }

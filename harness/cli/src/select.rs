@@ -59,6 +59,7 @@ pub(crate) fn must_be_simulated(devices: &[&Device]) -> Result<(), Complaint> {
         let link = match port {
             PortDescription::Can { .. } => "socketcan:can0",
             PortDescription::Serial { .. } => "serial:/dev/ttyUSB0",
+            PortDescription::Tcp { port } => &format!("tcp:192.168.1.10:{port}"),
         };
         format!("{role}: \"{link}\"")
     });

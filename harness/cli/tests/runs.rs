@@ -198,7 +198,10 @@ fn proof_holds_for_a_fault_that_is_caught() {
     assert_eq!(proof["holds"], true);
     let caught = proof["rounds"].as_array().unwrap().last().unwrap();
     assert_eq!(caught["guise"]["name"], "stale-crc-accepted");
-    assert_eq!(caught["failed"][0], "modbus.crc/spoilt-bit");
+    assert!(
+        caught["failed"].get("modbus.crc/spoilt-bit").is_some(),
+        "{caught:?}"
+    );
     assert_eq!(folder.files(), Vec::<String>::new());
 }
 
@@ -216,11 +219,7 @@ fn proof_fails_for_a_fault_that_nothing_catches() {
     ];
     let ran = folder.run(&arguments);
     assert_eq!(ran.exit(), Some(1), "{}", ran.out());
-    for part in [
-        "0 of 1 faults are caught",
-        "faults that nothing catches",
-        "a/read",
-    ] {
+    for part in ["0 of 1 faults are caught", "nothing catches it"] {
         assert!(ran.out().contains(part), "{}", ran.out());
     }
 }

@@ -154,6 +154,9 @@ fn server_behind_a_port_is_found_and_put_on_a_bench() {
     assert_eq!(checked.exit(), Some(0), "{}", checked.error());
     let json = folder.run(&[&on[..], &["--format", "json"]].concat());
     let json: serde_json::Value = serde_json::from_str(&json.out()).unwrap();
+    // One device that answers every unit is told once.
+    assert_eq!(json["devices"].as_array().map(Vec::len), Some(1));
     assert_eq!(json["devices"][0]["address"], 30);
+    assert_eq!(json["notes"][0], "it answers whatever the unit is");
     assert_eq!(json["bench"], serde_json::Value::Null);
 }

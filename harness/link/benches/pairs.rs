@@ -30,7 +30,7 @@ impl Participant for Echo {
             match reception {
                 Reception::Frame(frame) => Transmission::Frame(frame.with_id(self.answer)),
                 Reception::Character(character) => Transmission::Characters(vec![character]),
-                Reception::BusError(_) => return,
+                Reception::BusError(_) | Reception::Connected | Reception::Closed => return,
             },
         );
     }

@@ -120,6 +120,24 @@ pub enum StimulusError {
     Failed(String),
 }
 
+/// How a connection is ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Farewell {
+    /// In order: what was sent still arrives.
+    Close,
+    /// With a reset: what is on the way is lost.
+    Reset,
+}
+
+/// Why `port` cannot be connected again, or closed.
+pub(crate) fn not_a_connection(ports: &[PortProperties], port: PortIndex) -> LinkError {
+    let name = ports.get(port.0).map(|port| port.name.clone());
+    LinkError::Down {
+        port: name.unwrap_or_else(|| format!("number {}", port.0)),
+        reason: "it is no connection of which there could be more".to_owned(),
+    }
+}
+
 /// One device under test with all its ports, played by one thread.
 pub trait Lane {
     /// The present instant.
@@ -173,6 +191,25 @@ pub trait Lane {
 
     /// Ends its part.
     fn detach(&mut self, companion: CompanionIndex);
+
+    /// Opens a further connection to what the connection `port` leads to: a port of its own, called `name`, until it is
+    /// closed. A [`PortIndex`] that is closed may be given again.
+    ///
+    /// # Errors
+    /// [`LinkError`]: `port` is no connection, or no other is taken.
+    fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
+        let _ = name;
+        Err(not_a_connection(self.ports(), port))
+    }
+
+    /// Ends a connection that [`Lane::connect`] has opened.
+    ///
+    /// # Errors
+    /// [`LinkError`]: it is none.
+    fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
+        let _ = how;
+        Err(not_a_connection(self.ports(), port))
+    }
 
     /// What the device would show if it could be opened: see [`Participant::state`]. Empty where it cannot.
     fn device_state(&self) -> State {

@@ -24,7 +24,7 @@ pub use bus_error::BusError;
 pub use connected::Connected;
 pub use joined::Joined;
 pub use lane::{
-    Arrival, CompanionIndex, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
+    Arrival, CompanionIndex, Farewell, Lane, LinkError, Origin, PortIndex, PortProperties, Sent,
     StimulusError,
 };
 pub use participant::{NotOffered, Outbox, Participant, Stimulus, StimulusKind};

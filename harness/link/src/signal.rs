@@ -32,6 +32,8 @@ pub enum Transmission {
     Frame(Frame),
     /// Characters without a gap between them.
     Characters(Vec<Character>),
+    /// Of a participant: it ends the connection.
+    Close,
 }
 
 impl Transmission {
@@ -50,6 +52,10 @@ pub enum Reception {
     Character(Character),
     /// The tester's own CAN controller tells of trouble on the bus.
     BusError(BusError),
+    /// A connection was opened to this port of a participant.
+    Connected,
+    /// The other side has ended the connection.
+    Closed,
 }
 
 /// Parity of a serial line.

@@ -67,6 +67,7 @@ fn play<S: Sink>(suites: &[Suite], device: &DeviceDescription, mut sink: S) -> S
         fixed_rates: Default::default(),
         ports: ["can".to_owned()].into(),
         modbus_tcp: [].into(),
+        streams: [].into(),
         stimuli: [].into(),
         permits: [].into(),
         depth: Depth::Default,

@@ -1,5 +1,7 @@
 //! Whether a case can be played here at all, and why not.
 
+mod line;
+
 use std::collections::BTreeSet;
 
 use fieldproof_dictionary::Dictionary;
@@ -7,13 +9,13 @@ use fieldproof_link::StimulusKind;
 use fieldproof_suite::device::{DeviceDescription, Feature, FunctionCode, PortDescription};
 use fieldproof_suite::identity::Claim;
 use fieldproof_suite::model::{
-    Case, Depth, Effect, ExpectBytes, Located, Modbus, Need, Protocol, ReadExpectation, SdoRead,
-    SendBytes, Step, Stimulate, StimulusName,
+    Case, Depth, Effect, Located, Need, Protocol, ReadExpectation, SdoRead, Step, Stimulate,
+    StimulusName,
 };
 use fieldproof_suite::scalar::ObjectAddress;
 
 use crate::selected::missing_object;
-use crate::tester::{SERIAL, multiplexer};
+use crate::tester::{TCP, multiplexer};
 
 /// What the bench has and permits.
 #[derive(Debug, Clone)]
@@ -24,6 +26,8 @@ pub struct Bench {
     pub fixed_rates: BTreeSet<String>,
     /// Those of them whose link is Modbus TCP, where a header stands around a PDU instead of address and CRC.
     pub modbus_tcp: BTreeSet<String>,
+    /// Those of them on which a frame ends by its length, not by silence.
+    pub streams: BTreeSet<String>,
     /// The stimuli it offers.
     pub stimuli: BTreeSet<StimulusKind>,
     /// The effects it permits.
@@ -47,7 +51,7 @@ pub fn skip_reason(
     missing_port(protocol, bench)
         .or_else(|| too_deep(case, bench))
         .or_else(|| missing_need(case, device, dictionary, bench))
-        .or_else(|| rtu_alone(case, bench))
+        .or_else(|| line::cannot_carry(case, device, bench))
         .or_else(|| missing_claim(case, device))
         .or_else(|| missing_objects(case, dictionary))
         .or_else(|| missing_permission(case, device, bench))
@@ -59,6 +63,7 @@ pub fn skip_reason(
 fn missing_port(protocol: Protocol, bench: &Bench) -> Option<String> {
     let roles: &[&str] = match protocol {
         Protocol::Canopen => &["can"],
+        Protocol::Modbus if bench.ports.contains(TCP) => &[],
         Protocol::Modbus => &["serial"],
         Protocol::Gateway => &["can", "inverter"],
     };
@@ -89,7 +94,9 @@ fn missing_need(
                 multiplexer(*missing)
             ))
         }
-        Need::Functions(functions) => missing_function(functions, device),
+        Need::Functions(functions) => {
+            missing_function(functions, device).or_else(|| line::serial_line_only(functions, bench))
+        }
         Need::Feature(feature) if !is_claimed(*feature, device, bench) => Some(format!(
             "the device does not claim {}",
             feature_name(*feature)
@@ -152,44 +159,9 @@ fn missing_companion(case: &Case, device: &DeviceDescription) -> Option<String> 
 
 /// A device that has Modbus TCP and no serial line answers there what it would answer on one.
 fn is_claimed(feature: Feature, device: &DeviceDescription, bench: &Bench) -> bool {
-    let over_tcp = feature == Feature::ModbusRtu && bench.modbus_tcp.contains(SERIAL);
+    let over_tcp = feature == Feature::ModbusRtu && line::is_over_tcp(bench);
     device.features.contains(&feature)
         || (over_tcp && device.features.contains(&Feature::ModbusTcp))
-}
-
-/// What makes sense on a serial line alone is not played on Modbus TCP.
-fn rtu_alone(case: &Case, bench: &Bench) -> Option<String> {
-    if bench.modbus_tcp.is_empty() {
-        return None;
-    }
-    let steps = case.control.iter().chain(&case.steps);
-    steps
-        .chain(&case.restore.steps)
-        .find_map(|step| rtu_step(&step.value, bench))
-}
-
-fn rtu_step(step: &Step, bench: &Bench) -> Option<String> {
-    let is_tcp =
-        |port: &Option<String>| bench.modbus_tcp.contains(port.as_deref().unwrap_or(SERIAL));
-    match step {
-        Step::SendBytes(SendBytes { port, .. }) | Step::ExpectBytes(ExpectBytes { port, .. })
-            if is_tcp(port) =>
-        {
-            Some("written as an RTU frame; this link is Modbus TCP".to_owned())
-        }
-        Step::Modbus(Modbus { to: Some(to), .. })
-            if is_tcp(&None) && bench.address != Some(*to) =>
-        {
-            Some(format!(
-                "sent to address {to}; this link is Modbus TCP, with one device at its end"
-            ))
-        }
-        Step::Repeat(repeat) => {
-            let mut steps = repeat.steps.iter();
-            steps.find_map(|step| rtu_step(&step.value, bench))
-        }
-        _ => None,
-    }
 }
 
 fn missing_claim(case: &Case, device: &DeviceDescription) -> Option<String> {

@@ -102,6 +102,7 @@ impl Tester<'_> {
             self.session.emit(Event::PuttingBack(PuttingBack { at_ns }));
             let put_back = self
                 .let_late_answers_pass(&findings)
+                .and_then(|()| self.session.disconnect_all())
                 .and_then(|()| self.put_back(case, as_found))
                 .and_then(|()| self.session.settle());
             if let Err(stop) = put_back {

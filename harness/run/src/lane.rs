@@ -160,6 +160,7 @@ impl<'a> Player<'a> {
             sync_period: None,
             restores_by_steps: false,
             steps_begun: false,
+            sdo_request: None,
             open_transfer: None,
             strict: job.strict,
             watch: NodeWatch::new(heartbeat_by_default),

@@ -10,7 +10,7 @@ use crate::limits::{nanoseconds, show};
 use crate::modbus_tcp;
 use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
-use crate::tester::{SERIAL, Tester};
+use crate::tester::Tester;
 
 /// An answer by the rules of the line: right CRC or header, no spoilt character, not before its time.
 #[derive(Debug)]
@@ -68,7 +68,18 @@ impl Tester<'_> {
         pdu: &[u8],
         within: Duration,
     ) -> Result<Option<Answer>, Stop> {
-        let port = self.port(SERIAL)?;
+        let port = self.modbus_port()?;
+        self.modbus_exchange_on(port, to, pdu, within)
+    }
+
+    /// The same on any port.
+    pub(crate) fn modbus_exchange_on(
+        &mut self,
+        port: PortIndex,
+        to: u8,
+        pdu: &[u8],
+        within: Duration,
+    ) -> Result<Option<Answer>, Stop> {
         let transaction = match self.session.line(port) {
             Line::Stream(Framing::ModbusTcp) => Some(self.session.next_transaction()),
             _ => None,

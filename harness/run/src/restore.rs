@@ -323,6 +323,12 @@ impl Tester<'_> {
     /// Waits for the boot-up of a node that was reset or powered. One that leaves it out but answers again is back all
     /// the same: that it was left out is for the cases to judge.
     pub(crate) fn await_boot_up(&mut self) -> Result<(), Stop> {
+        if self.node.is_none() {
+            // Nothing tells when such a device is there again; it may take as long as it promises.
+            let patience = self.session.last_sent().end + self.device.timing.boot_up;
+            self.watch.boot_up_due = false;
+            return self.session.collect_until(patience);
+        }
         let id = self.identifier(fieldproof_wire::canopen::Service::ErrorControl)?;
         let within = self.device.timing.boot_up;
         let booted = self.first_frame(fieldproof_can::Id::Standard(id), within)?;

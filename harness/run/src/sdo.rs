@@ -270,7 +270,9 @@ impl Tester<'_> {
 
     pub(crate) fn send_sdo(&mut self, request: [u8; 8]) -> Result<(), Stop> {
         let request_id = self.identifier(Service::SdoRequest)?;
-        self.send_frame(Frame::of_eight(request_id, request))
+        let request = Frame::of_eight(request_id, request);
+        self.sdo_request = Some(request);
+        self.send_frame(request)
     }
 
     /// The answer to what was sent last; `time` is what its measurement is called.
@@ -282,7 +284,11 @@ impl Tester<'_> {
         let response_id = self.identifier(Service::SdoResponse)?;
         let Some((frame, received)) = self.first_frame(Id::Standard(response_id), within)? else {
             return Err(Stop::mismatch(
-                "the SDO server does not answer",
+                format!(
+                    "the SDO server does not answer: {}",
+                    self.sdo_request
+                        .map_or_else(String::new, |it| describe_frame(&it))
+                ),
                 format!("an answer within {}", crate::limits::show(within)),
                 "nothing",
                 Came::Silence,
@@ -296,7 +302,7 @@ impl Tester<'_> {
 
 pub(crate) fn malformed(frame: &Frame, expected: String, found: String) -> Stop {
     Stop::mismatch(
-        "the SDO answer is malformed",
+        format!("the SDO answer is malformed, expected {expected}"),
         expected,
         found,
         Came::Frame(*frame),
@@ -345,7 +351,7 @@ pub(crate) fn check_object(what: &str, asked: Multiplexer, named: Multiplexer) -
         return Ok(());
     }
     Err(Stop::mismatch(
-        format!("{what} names another object"),
+        format!("{what} names another object: {named}, and not {asked}"),
         asked.to_string(),
         named.to_string(),
         Came::Other,

@@ -1,5 +1,7 @@
 //! The tester's view of a lane while a case is played: what was sent, what came and was not yet expected.
 
+mod connections;
+
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -74,6 +76,10 @@ pub(crate) struct Session<'a> {
     last_activity: Vec<Instant>,
     /// The last transaction identifier of Modbus TCP.
     transaction: u16,
+    /// Connections that the case has opened, and the port that each leads to.
+    connections: Vec<(PortIndex, PortIndex)>,
+    /// How many ports there were from the beginning; those behind them are connections that were opened.
+    lasting: usize,
 }
 
 impl<'a> Session<'a> {
@@ -88,7 +94,8 @@ impl<'a> Session<'a> {
             .iter()
             .map(|port| Assembler::new(port.line, port.has_bit_times()))
             .collect();
-        let last_activity = vec![now; assemblers.len()];
+        let lasting = assemblers.len();
+        let last_activity = vec![now; lasting];
         Session {
             lane,
             sink,
@@ -105,6 +112,8 @@ impl<'a> Session<'a> {
             last_is_leaving: false,
             last_activity,
             transaction: 0,
+            connections: Vec::new(),
+            lasting,
         }
     }
 
@@ -117,11 +126,11 @@ impl<'a> Session<'a> {
     }
 
     pub(crate) fn port(&self, role: &str) -> Option<PortIndex> {
-        self.lane
-            .ports()
-            .iter()
-            .position(|port| port.name == role)
-            .map(PortIndex)
+        let ports = self.lane.ports();
+        let is_called = |port: &PortIndex| ports.get(port.0).is_some_and(|it| it.name == role);
+        let connections = self.connections.iter().map(|(port, _)| *port);
+        let lasting = (0..self.lasting).map(PortIndex);
+        connections.chain(lasting).find(is_called)
     }
 
     pub(crate) fn port_name(&self, port: PortIndex) -> &str {
@@ -259,6 +268,18 @@ impl<'a> Session<'a> {
 
     /// Sends bytes without a gap, after the silence that ends whatever was on the line before.
     pub(crate) fn send_bytes(&mut self, port: PortIndex, bytes: &[u8]) -> Result<Sent, Stop> {
+        let characters = bytes.iter().copied().map(Character::new).collect();
+        self.send_characters(port, characters, None)
+    }
+
+    /// Sends characters without a gap: `after` the end of those before them, or else after the silence that ends whatever
+    /// was on the line.
+    pub(crate) fn send_characters(
+        &mut self,
+        port: PortIndex,
+        characters: Vec<Character>,
+        after: Option<Duration>,
+    ) -> Result<Sent, Stop> {
         let silence = self
             .serial_settings(port)
             .map_or(Duration::ZERO, SerialSettings::silence_3_5);
@@ -267,8 +288,12 @@ impl<'a> Session<'a> {
             .get(port.0)
             .copied()
             .unwrap_or(Instant::START);
-        let at = self.lane.now().max(quiet_since + silence);
-        let characters = bytes.iter().copied().map(Character::new).collect();
+        let at = match after {
+            Some(pause) => self.last_sent.end + pause,
+            None => self.lane.now().max(quiet_since + silence),
+        };
+        let bytes = characters.iter().map(|it| it.byte).collect();
+        let spoilt = characters.iter().any(|it| it.spoilt);
         let sent = self
             .lane
             .send(port, at, Transmission::Characters(characters))?;
@@ -278,10 +303,10 @@ impl<'a> Session<'a> {
         self.record_serial(SerialEvent {
             at_ns: sent.end.as_nanos(),
             start_ns: sent.start.as_nanos(),
-            port: port.0 as u8,
+            port: self.recorded_port(port),
             direction: Direction::Sent,
-            bytes: bytes.to_vec(),
-            spoilt: false,
+            bytes,
+            spoilt,
             decoded: None,
         });
         Ok(sent)
@@ -420,6 +445,8 @@ impl<'a> Session<'a> {
                     message: Message::Can(frame),
                 })
             }
+            // Whoever still expects something there will miss it.
+            Reception::Connected | Reception::Closed => None,
             Reception::Character(character) => {
                 self.note_activity(arrival.port, arrival.at);
                 let assembler = self.assemblers.get_mut(arrival.port.0)?.as_mut()?;
@@ -456,7 +483,7 @@ impl<'a> Session<'a> {
         self.record_serial(SerialEvent {
             at_ns: frame.end.as_nanos(),
             start_ns: frame.start.as_nanos(),
-            port: port.0 as u8,
+            port: self.recorded_port(port),
             direction,
             bytes: frame.bytes.clone(),
             spoilt: frame.spoilt,

@@ -20,6 +20,7 @@ use crate::value::Saved;
 /// The port roles of suites.
 pub(crate) const CAN: &str = "can";
 pub(crate) const SERIAL: &str = "serial";
+pub(crate) const TCP: &str = "tcp";
 
 /// Every CANopen device has it, and reading it changes nothing.
 pub(crate) const DEVICE_TYPE: Multiplexer = Multiplexer::new(0x1000, 0);
@@ -50,6 +51,8 @@ pub(crate) struct Tester<'a> {
     pub(crate) sync_period: Option<Duration>,
     /// The case says itself how what it changes is put back.
     pub(crate) restores_by_steps: bool,
+    /// The last request to an SDO server.
+    pub(crate) sdo_request: Option<Frame>,
     /// The object of a segmented or block transfer that has not ended.
     pub(crate) open_transfer: Option<Multiplexer>,
     /// Whether a step of the case itself, not only of its control, has begun.
@@ -71,6 +74,14 @@ impl Tester<'_> {
         self.session
             .port(role)
             .ok_or_else(|| Stop::Bench(format!("this bench has no port {role:?}")))
+    }
+
+    /// The port that Modbus is spoken on: the serial one, or else that of Modbus TCP.
+    pub(crate) fn modbus_port(&self) -> Result<PortIndex, Stop> {
+        match self.session.port(SERIAL) {
+            Some(port) => Ok(port),
+            None => self.port(TCP),
+        }
     }
 
     pub(crate) fn node_id(&self) -> Result<NodeId, Stop> {

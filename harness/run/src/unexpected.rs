@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use fieldproof_can::Frame;
-use fieldproof_link::{Instant, Origin};
+use fieldproof_link::{Instant, Origin, PortIndex};
 use fieldproof_suite::model::{Forbidden, NmtState};
 use fieldproof_wire::canopen::nmt::State;
 use fieldproof_wire::canopen::{NodeId, Service, identify};
@@ -14,7 +14,7 @@ use crate::modbus::show_bytes;
 use crate::node::NodeWatch;
 use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
-use crate::tester::{SERIAL, Tester};
+use crate::tester::{SERIAL, TCP, Tester};
 
 /// What an unexpected frame amounts to.
 enum Judgement {
@@ -58,12 +58,18 @@ impl Tester<'_> {
         }
         match &received.message {
             Message::Can(frame) => self.judge_frame(frame, received.at, forbids),
-            Message::Serial { bytes, .. } if self.session.port_name(received.port) == SERIAL => {
+            Message::Serial { bytes, .. } if self.is_master_on(received.port) => {
                 Judgement::Wrong(unexpected("Modbus frame", &show_bytes(bytes), Came::Answer))
             }
             // Behind a gateway the device is the master and may ask what it likes.
             Message::Serial { .. } => Judgement::Proper,
         }
+    }
+
+    /// Whether the device only answers there.
+    fn is_master_on(&self, port: PortIndex) -> bool {
+        let name = self.session.port_name(port);
+        name == SERIAL || name == TCP || self.session.is_connection(port)
     }
 
     fn judge_frame(&self, frame: &Frame, at: Instant, forbids: &[Forbidden]) -> Judgement {
@@ -169,7 +175,10 @@ const fn nmt_state(code: u8) -> Option<NmtState> {
 
 fn unexpected(kind: &str, came: &str, what: Came) -> Stop {
     Stop::mismatch(
-        format!("an unexpected {kind} came"),
+        match &what {
+            Came::Frame(frame) => format!("an unexpected {kind} came: {}", describe_frame(frame)),
+            _ => format!("an unexpected {kind} came"),
+        },
         "nothing more",
         came,
         what,

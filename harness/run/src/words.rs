@@ -39,7 +39,7 @@ pub(crate) fn serial_words(event: &SerialEvent, port: &str, line: Line) -> Strin
     let from_master = match event.direction {
         Direction::Sent => true,
         Direction::Companion => false,
-        Direction::Received => port != crate::tester::SERIAL,
+        Direction::Received => port != crate::tester::SERIAL && port != crate::tester::TCP,
     };
     let direction = match from_master {
         true => ModbusDirection::Request,

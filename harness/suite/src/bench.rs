@@ -136,6 +136,11 @@ impl LinkKind {
         matches!(self, LinkKind::Sim | LinkKind::SocketCan | LinkKind::Slcan)
     }
 
+    /// Whether a port of Modbus TCP can be connected to it.
+    pub const fn carries_tcp(self) -> bool {
+        matches!(self, LinkKind::Sim | LinkKind::Tcp)
+    }
+
     /// Whether a serial port can be connected to it.
     pub const fn carries_serial(self) -> bool {
         matches!(self, LinkKind::Sim | LinkKind::Serial | LinkKind::Tcp)

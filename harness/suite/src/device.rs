@@ -63,6 +63,11 @@ pub enum PortDescription {
         /// What the tester plays on this port: `teco-inverter`.
         companion: Option<String>,
     },
+    /// `{tcp: 502}`: Modbus TCP.
+    Tcp {
+        /// Where it listens.
+        port: u16,
+    },
 }
 
 /// Parity by name.
@@ -104,6 +109,9 @@ pub struct ModbusDescription {
     /// nothing is known.
     #[serde(default)]
     pub functions: Vec<FunctionCode>,
+    /// How many connections of Modbus TCP it serves at once. Where nothing is said, nothing is known.
+    #[serde(default)]
+    pub connections: Option<u16>,
 }
 
 impl ModbusDescription {

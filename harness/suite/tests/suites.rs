@@ -4,9 +4,12 @@
 
 use std::time::Duration;
 
-use fieldproof_suite::model::{CompanionStimulus, PowerAction, ReadExpectation, Step, Stimulate};
-use fieldproof_suite::scalar::{Bytes, Number, Value};
-use fieldproof_suite::{Diagnostic, Environment, Loaded, SourceFile, load};
+use fieldproof_suite::device::PortDescription;
+use fieldproof_suite::model::{
+    CompanionStimulus, Crc, OtherBytes, PauseLength, PowerAction, ReadExpectation, Step, Stimulate,
+};
+use fieldproof_suite::scalar::{BytePatternText, Bytes, Number, Value};
+use fieldproof_suite::{Diagnostic, Environment, Loaded, SourceFile, load, load_device};
 
 const NODE_1: Environment = Environment {
     node: Some(1),
@@ -159,6 +162,73 @@ fn the_bench_gives_node_and_address() {
         panic!("{steps:?}")
     };
     assert_eq!(read.expect, ReadExpectation::Value(Value::Number(0x8A)));
+}
+
+#[test]
+fn bytes_have_pauses_followers_and_alternatives_and_connections_names() {
+    let steps = steps(
+        "- connect: one
+- send-bytes: {port: one, bytes: \"00 01\", pause: {after: 1, again: true, lasting: 20 ms}}
+- expect-bytes: {port: one, bytes: \"?? 01\", or: [silence, \"02\"]}
+- disconnect: {name: one, reset: true}
+- send-bytes: {bytes: \"{address}\", crc: append, spoil: 2, then: {bytes: 55, crc: append}}",
+    );
+    let [
+        Step::Connect(connect),
+        Step::SendBytes(slow),
+        Step::ExpectBytes(expect),
+        Step::Disconnect(disconnect),
+        Step::SendBytes(followed),
+    ] = steps.as_slice()
+    else {
+        panic!("{steps:?}");
+    };
+    assert_eq!(
+        (connect.name.as_str(), disconnect.name.as_str()),
+        ("one", "one")
+    );
+    assert!(disconnect.reset);
+    let pause = slow.pause.unwrap();
+    assert_eq!((pause.after.get(), pause.again), (1, true));
+    assert_eq!(pause.lasting, PauseLength::Time(Duration::from_millis(20)));
+    assert_eq!(slow.port.as_deref(), Some("one"));
+    let other = OtherBytes::Bytes(BytePatternText("02".parse().unwrap()));
+    assert_eq!(expect.or, [OtherBytes::Silence, other]);
+    assert_eq!(
+        (followed.spoil, followed.bytes.0.as_slice()),
+        (Some(2), &[0x20][..])
+    );
+    let after: Vec<_> = followed
+        .then
+        .iter()
+        .map(|it| (it.bytes.0.clone(), it.crc))
+        .collect();
+    assert_eq!(after, [(vec![0x55], Crc::Append)]);
+}
+
+#[test]
+fn a_port_of_modbus_tcp_is_a_port_of_its_own() {
+    let load = |ports: &str| {
+        let text = format!(
+            "language: 1\ndevice: one\ntitle: One\nports: {ports}\nmodbus: {{address: 1}}\nfeatures: [modbus-tcp]\n"
+        );
+        load_device(&SourceFile {
+            path: "device.yaml".to_owned(),
+            text,
+        })
+    };
+    let device = load("{tcp: {tcp: 502}}").unwrap();
+    assert_eq!(device.ports["tcp"], PortDescription::Tcp { port: 502 });
+    let both = load("{serial: {serial: 9600}, tcp: {tcp: 1502}}").unwrap();
+    assert_eq!(both.ports.len(), 2);
+    for wrong in [
+        "{tcp: {tcp: 502, parity: even}}",
+        "{tcp: {tcp: 502, serial: 9600}}",
+        "{tcp: {serial: 9600}}",
+        "{other: {tcp: 502}}",
+    ] {
+        assert!(load(wrong).is_err(), "{wrong}");
+    }
 }
 
 #[test]

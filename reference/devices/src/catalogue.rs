@@ -47,6 +47,8 @@ pub enum Medium {
     },
     /// A serial port.
     Serial(SerialSettings),
+    /// A port of Modbus TCP; further connections are ports behind all that a device has.
+    Tcp,
 }
 
 /// How one device is to be built.
@@ -75,6 +77,8 @@ pub struct Fault {
     pub breaks: &'static str,
     /// What one sees, in the words of a bug report.
     pub words: &'static str,
+    /// What the first line of a failure names, one of these: the object, state or field that is wrong.
+    pub named: &'static [&'static str],
     /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
     /// `sync`, `time`, `store`, `emergency`, `cob-id`, `robustness`, `gateway`, `cia402`, `cia406`.
     pub caught_by: &'static str,
@@ -142,15 +146,35 @@ impl DeviceKind {
         }
         if let Some(name) = &settings.fault {
             let fault = self.faults().find(|fault| fault.name == name);
-            match (fault, canopen::ObjectFault::parse(name)) {
-                (Some(fault), _) => (fault.apply)(&mut behaviour),
-                (None, Some(fault)) if self.is_canopen() => {
-                    behaviour.canopen.object_fault = Some(fault);
+            let applied = match fault {
+                Some(fault) => {
+                    (fault.apply)(&mut behaviour);
+                    true
                 }
-                _ => return Err(self.unknown(name)),
+                None => self.apply_fault_of_one_value(name, &mut behaviour),
+            };
+            if !applied {
+                return Err(self.unknown(name));
             }
         }
         Ok(behaviour)
+    }
+
+    /// Whether `name` is one.
+    fn apply_fault_of_one_value(&self, name: &str, behaviour: &mut Behaviour) -> bool {
+        if let Some(fault) = canopen::ObjectFault::parse(name).filter(|_| self.is_canopen()) {
+            behaviour.canopen.object_fault = Some(fault);
+            return true;
+        }
+        if let Some(fault) = modbus::RegisterFault::parse(name).filter(|_| self.is_modbus_slave()) {
+            behaviour.modbus.register_fault = Some(fault);
+            return true;
+        }
+        false
+    }
+
+    fn is_modbus_slave(&self) -> bool {
+        self.ports.iter().any(|port| port.role == "serial")
     }
 
     fn is_canopen(&self) -> bool {

@@ -15,6 +15,7 @@ mod kinco_servo;
 mod liaomiao_encoder;
 pub mod modbus;
 mod modbus_complete;
+pub mod neighbour;
 #[cfg(test)]
 mod script;
 mod teco_jn5_cm_can;

@@ -172,6 +172,7 @@ impl Script {
                         deliver(companion.as_mut(), 0, self.now, &characters, out);
                     }
                 }
+                Transmission::Close => writeln!(self.told, "<< end").unwrap(),
             }
         }
     }

@@ -139,7 +139,7 @@ fn check(out: &mut Outbox) {
     for (port, what) in out.drain() {
         match what {
             Transmission::Frame(_) => assert_eq!(port, 0),
-            Transmission::Characters(_) => assert_eq!(port, 1),
+            Transmission::Characters(_) | Transmission::Close => assert_eq!(port, 1),
         }
     }
 }

@@ -197,6 +197,7 @@ fn engine(address: SocketAddr, suites: &[Suite]) -> Duration {
         fixed_rates: Default::default(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: ["serial".to_owned()].into(),
+        streams: ["serial".to_owned()].into(),
         stimuli: [].into(),
         permits: [].into(),
         node: None,

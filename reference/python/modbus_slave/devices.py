@@ -64,9 +64,11 @@ class Inverter(Store):
 
     OPERATION, FREQUENCY, STATE, IN_FORCE, OUTPUT = 0x2501, 0x2502, 0x2520, 0x2523, 0x2524
     RUN, REVERSE, READY = 1 << 0, 1 << 1, 1 << 2
+    MODEL, A510 = 0x252F, 300
 
     def __init__(self, registers: list[Register], address: int) -> None:
         super().__init__(registers, address)
+        self.put(self.MODEL, self.A510)
         self.written(self.OPERATION)
 
     def written(self, address: int) -> None:

@@ -1,6 +1,6 @@
 """RTU frames end with a silence, which pymodbus does not look at."""
 
-import time
+import asyncio
 
 from pymodbus.framer import FramerRTU
 from pymodbus.pdu import DecodePDU, ModbusPDU
@@ -8,8 +8,9 @@ from pymodbus.server.requesthandler import ServerRequestHandler
 
 from .pdus import ReadRequest, UnknownRequest, WriteMultipleRequest, WriteSingleRequest
 
-# Longer than any pause that a USB adapter or the scheduler makes in a frame, shorter than one a tester makes after it.
-SILENCE_S = 0.05
+# Longer than the pauses that a scheduler makes in a frame, shorter than one a tester makes after it.
+SILENCE_S = 0.01
+LONGEST_FRAME = 256
 KNOWN = (ReadRequest, WriteSingleRequest, WriteMultipleRequest)
 
 
@@ -33,19 +34,21 @@ class Decoder(DecodePDU):
 
 
 class SilentRtu(FramerRTU):
-    """Takes all that came since the last silence as one frame, as soon as its CRC is right."""
+    """Takes all that came since the last silence as one frame."""
 
     def decode(self, data: bytes) -> tuple[int, int, int, bytes]:
         """The bytes used, the address, no transaction and the PDU."""
-        if len(data) < self.MIN_SIZE or not self.check_CRC(data[:-2], int.from_bytes(data[-2:], "big")):
+        possible = self.MIN_SIZE <= len(data) <= LONGEST_FRAME
+        if not possible or not self.check_CRC(data[:-2], int.from_bytes(data[-2:], "big")):
             return 0, 0, 0, self.EMPTY
         return len(data), data[0], 0, data[1:-2]
 
 
 class RtuHandler(ServerRequestHandler):
-    """Forgets what came before a silence and was no frame."""
+    """Waits for the silence that ends a frame."""
 
-    _last = 0.0
+    _collected = b""
+    _end: asyncio.TimerHandle | None = None
 
     def callback_disconnected(self, exc: Exception | None) -> None:
         """The port is closed, or gone."""
@@ -54,8 +57,12 @@ class RtuHandler(ServerRequestHandler):
 
     def data_received(self, data: bytes) -> None:
         """Bytes from the line."""
-        now = time.monotonic()
-        if now - self._last > SILENCE_S:
-            self.recv_buffer = b""
-        self._last = now
-        super().data_received(data)
+        self._collected += data
+        if self._end:
+            self._end.cancel()
+        self._end = asyncio.get_running_loop().call_later(SILENCE_S, self._frame_ended)
+
+    def _frame_ended(self) -> None:
+        frame, self._collected = self._collected, b""
+        self.recv_buffer = b""
+        super().data_received(frame)

@@ -170,6 +170,7 @@ fn plan(options: &RunOptions) -> Plan {
             fault: options.fault.clone(),
             variant: options.variant.clone(),
             seed: options.seed,
+            line: None,
         },
         operator: match options.no_operator {
             true => Operator::none(),

@@ -52,7 +52,7 @@ pub(crate) fn scan(options: &ScanOptions, screen: &mut Screen) -> Result<Exit, C
         PortDescription::Can { .. } => {
             Found::on_canopen(set, &canopen(options, &link, &port)?, &known)
         }
-        PortDescription::Serial { .. } => {
+        PortDescription::Serial { .. } | PortDescription::Tcp { .. } => {
             Found::on_modbus(set, &modbus(options, &link, &port)?, &known)
         }
     };
@@ -142,7 +142,7 @@ fn port(options: &ScanOptions, link: &Link) -> PortDescription {
                 stop_bits: parameters.stop_bits.unwrap_or(stop_bits),
                 companion,
             },
-            can @ PortDescription::Can { .. } => can,
+            other => other,
         };
     }
     let of_interface = match link.kind {

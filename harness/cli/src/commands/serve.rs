@@ -4,9 +4,9 @@ use std::path::Path;
 
 use fieldproof_devices::inverter::Inverter;
 use fieldproof_devices::{DeviceKind, Medium, Settings};
-use fieldproof_link::real::Port;
 use fieldproof_link::real::serve::{Control, serve as run_server};
-use fieldproof_link::{Connected, Joined, Parity, Participant, SerialSettings, StopBits};
+use fieldproof_link::real::{OpenError, Port, TcpServer};
+use fieldproof_link::{Connected, Framing, Joined, Parity, Participant, SerialSettings, StopBits};
 use fieldproof_report::{Problem, Severity};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::device::{self, PortDescription};
@@ -44,9 +44,13 @@ pub(crate) fn serve(options: &ServeOptions, screen: &mut Screen) -> Result<Exit,
     let device = Box::new(Connected::new(device, numbers));
     let mut control = open_control(options.control.as_deref())?;
     let stop = stop::on_interrupt()?;
-    for port in &ports {
-        let properties = port.properties();
-        screen.print(&format!("{} is on {}\n", kind.name, properties.link));
+    let mut links: Vec<&str> = ports
+        .iter()
+        .map(|port| port.properties().link.as_str())
+        .collect();
+    links.dedup();
+    for link in links {
+        screen.print(&format!("{} is on {link}\n", kind.name));
     }
     // Scripts wait for this line before they talk to the device.
     screen.print("ready\n");
@@ -105,19 +109,48 @@ fn open_ports(kind: &DeviceKind, on: &[On<'_>]) -> Result<Vec<OpenPort>, Complai
         let carries = |number: &usize| match kind.ports[*number].medium {
             Medium::Can { .. } => link.kind.carries_can(),
             Medium::Serial(_) => link.kind.carries_serial(),
+            Medium::Tcp => is_modbus_tcp(link),
         };
         let is_meant = |number: &usize| role.is_none_or(|role| kind.ports[*number].role == role);
         let is_free = |number: &usize| ports.iter().all(|(taken, _)| taken != number);
-        let mut numbers = (0..kind.ports.len()).filter(is_meant);
-        let Some(number) = numbers.find(|number| carries(number) && is_free(number)) else {
+        let fits = |number: &usize| is_meant(number) && carries(number) && is_free(number);
+        let numbers = || (0..kind.ports.len()).filter(fits);
+        let is_own = |number: &usize| kind.ports[*number].medium == Medium::Tcp;
+        let Some(number) = numbers().find(is_own).or_else(|| numbers().next()) else {
             return Err(no_port(kind, text, *role));
         };
         let port = kind.ports[number];
+        if port.medium == Medium::Tcp {
+            ports.extend(connections(kind, number, link)?);
+            continue;
+        }
         let port = links::open_to_serve(port.role, link, &described(port.medium))
             .map_err(|error| Complaint::bench(error.to_string()))?;
         ports.push((number, port));
     }
     Ok(ports)
+}
+
+/// So many connections are served at once.
+const CONNECTIONS: usize = 16;
+
+/// The ports of as many connections: the device's own port, and those behind all that it has.
+fn connections(kind: &DeviceKind, number: usize, link: &Link) -> Result<Vec<OpenPort>, Complaint> {
+    let role = kind.ports[number].role;
+    let broken = |error: OpenError| Complaint::bench(error.to_string());
+    let first = TcpServer::listen(role, &link.target, links::framing(link)).map_err(broken)?;
+    let mut further: Vec<OpenPort> = Vec::new();
+    for place in 1..CONNECTIONS {
+        let beside = first.beside().map_err(broken)?;
+        further.push((kind.ports.len() + place - 1, Box::new(beside)));
+    }
+    let mut all: Vec<OpenPort> = vec![(number, Box::new(first))];
+    all.append(&mut further);
+    Ok(all)
+}
+
+fn is_modbus_tcp(link: &Link) -> bool {
+    link.kind == LinkKind::Tcp && links::framing(link) == Framing::ModbusTcp
 }
 
 /// What a device is put on.
@@ -148,6 +181,8 @@ fn no_port(kind: &DeviceKind, text: &str, role: Option<&str>) -> Complaint {
 fn described(medium: Medium) -> PortDescription {
     match medium {
         Medium::Can { bit_rate } => PortDescription::Can { bit_rate },
+        // Nothing says where it listens until it does.
+        Medium::Tcp => PortDescription::Tcp { port: 0 },
         Medium::Serial(SerialSettings {
             baud,
             parity,

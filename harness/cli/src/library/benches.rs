@@ -187,6 +187,7 @@ impl Reader {
             let (what, carried) = match port {
                 PortDescription::Can { .. } => ("CAN", kind.carries_can()),
                 PortDescription::Serial { .. } => ("serial", kind.carries_serial()),
+                PortDescription::Tcp { .. } => ("TCP", kind.carries_tcp()),
             };
             if !carried {
                 let message = format!("the port \"{role}\" is a {what} port");

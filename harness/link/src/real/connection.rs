@@ -6,7 +6,7 @@ use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
 use std::time::Duration;
 
 use nix::errno::Errno;
-use nix::sys::socket::{MsgFlags, recv};
+use nix::sys::socket::{MsgFlags, recv, setsockopt, sockopt};
 
 use super::Clock;
 use super::port::News;
@@ -72,6 +72,16 @@ impl Connection {
         stream.set_read_timeout(Some(WAIT_AS_ASKED))?;
         stream.set_write_timeout(Some(WAIT_AS_ASKED))?;
         Ok(Connection { stream })
+    }
+
+    /// When it is dropped, the other side is told by a reset.
+    pub(super) fn reset_at_the_end(&self) {
+        let at_once = nix::libc::linger {
+            l_onoff: 1,
+            l_linger: 0,
+        };
+        // Where that cannot be set it is closed in order.
+        let _ = setsockopt(&self.stream, sockopt::Linger, &at_once);
     }
 
     pub(super) fn readable(&self) -> BorrowedFd<'_> {

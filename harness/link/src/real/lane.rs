@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::port::Port;
 use super::ports::{GivesUp, Heard, Ports};
 use crate::{
-    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Origin, Outbox,
+    Arrival, CompanionIndex, Farewell, Instant, Lane, Line, LinkError, NotOffered, Origin, Outbox,
     Participant, PortIndex, PortProperties, Sent, State, Stimulus, StimulusError, StimulusKind,
     Transmission,
 };
@@ -268,6 +268,14 @@ impl Lane for RealLane {
         if let Some(place) = self.companions.get_mut(companion.0) {
             *place = None;
         }
+    }
+
+    fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
+        self.ports.connect(port.0, name).map(PortIndex)
+    }
+
+    fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
+        self.ports.disconnect(port.0, how)
     }
 
     fn device_state(&self) -> State {

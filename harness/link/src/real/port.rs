@@ -3,8 +3,8 @@
 use std::os::fd::BorrowedFd;
 use std::time::Duration;
 
-use super::Clock;
-use crate::{Instant, Line, LinkError, PortProperties, Reception, Sent, Transmission};
+use super::{Clock, OpenError};
+use crate::{Farewell, Instant, Line, LinkError, PortProperties, Reception, Sent, Transmission};
 
 /// A port on a real link. It never waits: the lane waits for all its ports at once.
 pub trait Port: Send {
@@ -44,6 +44,20 @@ pub trait Port: Send {
     /// How long a frame may wait for its turn and its acknowledge, and the port be busy.
     fn patience(&self) -> Duration {
         PATIENCE
+    }
+
+    /// Opens a further connection to where this one leads; `None` if it is none.
+    ///
+    /// # Errors
+    /// [`OpenError`]: it is not taken.
+    fn again(&self, name: &str) -> Option<Result<Box<dyn Port>, OpenError>> {
+        let _ = name;
+        None
+    }
+
+    /// What is to be done before it is dropped, so that it ends so.
+    fn farewell(&mut self, how: Farewell) {
+        let _ = how;
     }
 
     /// Sets it otherwise: another bit rate, say.

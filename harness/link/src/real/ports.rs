@@ -9,7 +9,10 @@ use nix::sys::time::TimeSpec;
 
 use super::Clock;
 use super::port::{Departure, News, Port, SHORT_WAIT, SendError, down};
-use crate::{Instant, Line, LinkError, PortProperties, Reception, Sent, Transmission};
+use crate::lane::not_a_connection;
+use crate::{
+    Farewell, Instant, Line, LinkError, PortIndex, PortProperties, Reception, Sent, Transmission,
+};
 
 /// How long to wait at most before the ports are looked at again: they have things to do beside.
 const LOOK: Duration = Duration::from_millis(100);
@@ -47,7 +50,10 @@ struct Leaving<Sender> {
 /// The open ports of a process. `Sender` says who of the process sent something.
 pub(super) struct Ports<Sender> {
     pub(super) clock: Clock,
-    ports: Vec<Box<dyn Port>>,
+    /// `None` where a further connection was closed.
+    ports: Vec<Option<Box<dyn Port>>>,
+    /// So many of them were there from the beginning; a connection among those behind them may end without harm.
+    lasting: usize,
     properties: Vec<PortProperties>,
     leaving: Vec<VecDeque<Leaving<Sender>>>,
     gives_up: GivesUp,
@@ -63,7 +69,8 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
             clock: Clock::start(),
             properties: ports.iter().map(|it| it.properties().clone()).collect(),
             leaving: ports.iter().map(|_| VecDeque::new()).collect(),
-            ports,
+            lasting: ports.len(),
+            ports: ports.into_iter().map(Some).collect(),
             gives_up,
             heard: VecDeque::new(),
             failed: None,
@@ -75,13 +82,44 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         &self.properties
     }
 
+    /// Opens a further connection to where `port` leads.
+    pub(super) fn connect(&mut self, port: usize, name: &str) -> Result<usize, LinkError> {
+        let again = self.ports.get(port).and_then(Option::as_ref);
+        let Some(opened) = again.and_then(|port| port.again(name)) else {
+            return Err(not_a_connection(&self.properties, PortIndex(port)));
+        };
+        let opened = opened.map_err(|error| down(&self.properties[port], error))?;
+        let closed = (self.lasting..self.ports.len()).find(|place| self.ports[*place].is_none());
+        let place = closed.unwrap_or(self.ports.len());
+        if place == self.ports.len() {
+            self.properties.push(opened.properties().clone());
+            self.leaving.push(VecDeque::new());
+            self.ports.push(None);
+        }
+        self.properties[place] = opened.properties().clone();
+        self.ports[place] = Some(opened);
+        Ok(place)
+    }
+
+    /// Ends a further connection.
+    pub(super) fn disconnect(&mut self, port: usize, how: Farewell) -> Result<(), LinkError> {
+        if port < self.lasting || port >= self.ports.len() {
+            return Err(not_a_connection(&self.properties, PortIndex(port)));
+        }
+        if let Some(mut open) = self.ports[port].take() {
+            open.farewell(how);
+        }
+        self.heard.retain(|heard| heard.port != port);
+        Ok(())
+    }
+
     pub(super) fn tells_departure(&self, port: usize) -> bool {
         let properties = self.properties.get(port);
         properties.is_some_and(|properties| properties.tells_departure)
     }
 
     pub(super) fn set_line(&mut self, port: usize, line: Line) -> Result<(), LinkError> {
-        let Some(open) = self.ports.get_mut(port) else {
+        let Some(Some(open)) = self.ports.get_mut(port) else {
             return Err(no_such_port(port));
         };
         open.set_line(line)?;
@@ -98,8 +136,8 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
     ) -> Result<Option<Sent>, LinkError> {
         let started = self.clock.now();
         loop {
-            let Some(open) = self.ports.get_mut(port) else {
-                return Err(no_such_port(port));
+            let Some(Some(open)) = self.ports.get_mut(port) else {
+                return Err(self.closed(port));
             };
             let give_up = started + open.patience();
             match open.send(&mut self.clock, &what) {
@@ -140,7 +178,8 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         if timeout > SHORT_WAIT && self.take_waiting() {
             return Ok(());
         }
-        let readable = self.ports.iter().map(|port| port.readable());
+        let open = self.ports.iter().flatten();
+        let readable = open.map(|port| port.readable());
         let mut descriptors: Vec<PollFd<'_>> = readable
             .map(|descriptor| PollFd::new(descriptor, PollFlags::POLLIN))
             .collect();
@@ -157,15 +196,18 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
     /// Takes all that has come, without waiting.
     pub(super) fn take(&mut self) {
         for port in 0..self.ports.len() {
+            let Some(open) = &mut self.ports[port] else {
+                continue;
+            };
             let mut news = std::mem::take(&mut self.news);
-            let taken = self.ports[port].take(&mut self.clock, &mut news);
+            let taken = open.take(&mut self.clock, &mut news);
             self.tell(port, news, taken);
         }
     }
 
     /// Waits for a single port in one system call, if it can do that.
     fn take_waiting(&mut self) -> bool {
-        let [port] = self.ports.as_mut_slice() else {
+        let [Some(port)] = self.ports.as_mut_slice() else {
             return false;
         };
         let mut news = std::mem::take(&mut self.news);
@@ -182,7 +224,10 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
     }
 
     fn tell(&mut self, port: usize, mut news: Vec<News>, taken: Result<(), LinkError>) {
-        if let Err(error) = taken {
+        let ended = taken.is_err() && port >= self.lasting;
+        if let Err(error) = taken
+            && !ended
+        {
             self.failed.get_or_insert(error);
         }
         for news in news.drain(..) {
@@ -196,6 +241,11 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
             }
         }
         self.news = news;
+        if ended {
+            let now = self.clock.now();
+            self.hear(port, now, Reception::Closed, None);
+            self.ports[port] = None;
+        }
         self.give_up_leaving(port);
     }
 
@@ -204,7 +254,10 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
         let Some(oldest) = self.leaving[port].front() else {
             return;
         };
-        let patience = self.ports[port].patience();
+        let Some(open) = &self.ports[port] else {
+            return;
+        };
+        let patience = open.patience();
         if self.gives_up == GivesUp::WithAnError && self.clock.now().since(oldest.since) > patience
         {
             self.leaving[port].clear();
@@ -224,6 +277,7 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
                     self.hear(port, sent.end, what, Some(from));
                 }
             }
+            Transmission::Close => {}
         }
     }
 
@@ -238,6 +292,13 @@ impl<Sender: Copy + PartialEq> Ports<Sender> {
             from,
         };
         self.heard.insert(place, heard);
+    }
+
+    fn closed(&self, port: usize) -> LinkError {
+        match self.properties.get(port) {
+            Some(properties) => down(properties, "the connection is closed"),
+            None => no_such_port(port),
+        }
     }
 
     fn not_acknowledged(&self, port: usize) -> LinkError {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::connection::{Broken, Connection, Given};
 use super::port::{Departure, News, Port, SendError, down};
 use super::{Clock, OpenError};
-use crate::{Framing, Line, LinkError, PortProperties, Sent, Transmission};
+use crate::{Farewell, Framing, Line, LinkError, PortProperties, Sent, Transmission};
 
 /// How late bytes may be read after they arrived, and how long they may lie before they are sent, if nobody knows
 /// better: a wake-up of a busy machine.
@@ -17,6 +17,9 @@ const UNCERTAINTY: Duration = Duration::from_millis(1);
 pub struct Tcp {
     connection: Connection,
     properties: PortProperties,
+    host_port: String,
+    framing: Framing,
+    connect_timeout: Duration,
 }
 
 impl Tcp {
@@ -39,6 +42,9 @@ impl Tcp {
         Ok(Tcp {
             connection,
             properties: properties(role, link.clone(), framing, uncertainty),
+            host_port: host_port.to_owned(),
+            framing,
+            connect_timeout,
         })
     }
 
@@ -134,6 +140,24 @@ impl Port for Tcp {
     ) -> Option<Result<(), LinkError>> {
         let taken = self.connection.take_waiting(clock, news);
         Some(taken.map_err(|why| self.down(&why)))
+    }
+
+    fn again(&self, name: &str) -> Option<Result<Box<dyn Port>, OpenError>> {
+        let uncertainty = Some(self.properties.uncertainty);
+        let opened = Tcp::open(
+            name,
+            &self.host_port,
+            self.framing,
+            self.connect_timeout,
+            uncertainty,
+        );
+        Some(opened.map(|port| Box::new(port) as Box<dyn Port>))
+    }
+
+    fn farewell(&mut self, how: Farewell) {
+        if how == Farewell::Reset {
+            self.connection.reset_at_the_end();
+        }
     }
 
     fn set_line(&mut self, line: Line) -> Result<(), LinkError> {

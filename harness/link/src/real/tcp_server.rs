@@ -11,7 +11,7 @@ use super::connection::{Connection, Given};
 use super::port::{Departure, News, Port, SendError, down};
 use super::tcp::{link_text, properties};
 use super::{Clock, OpenError};
-use crate::{Framing, Line, LinkError, PortProperties, Sent, Transmission};
+use crate::{Framing, Line, LinkError, PortProperties, Reception, Sent, Transmission};
 
 /// A port that listens, and carries one connection at a time. Who comes while there is one waits until that is closed;
 /// who closes it ends nothing but the connection.
@@ -48,6 +48,28 @@ impl TcpServer {
         server
             .watch_listener()
             .map_err(|error| OpenError::new(&link, error))?;
+        Ok(server)
+    }
+
+    /// Another port that listens at the same place: it takes the next client while this one has one.
+    ///
+    /// # Errors
+    /// [`OpenError`]: the system has no room for it.
+    pub fn beside(&self) -> Result<TcpServer, OpenError> {
+        let link = &self.properties.link;
+        let wrong = |error: std::io::Error| OpenError::new(link, error);
+        let readable =
+            Epoll::new(EpollCreateFlags::EPOLL_CLOEXEC).map_err(|error| wrong(error.into()))?;
+        let server = TcpServer {
+            listener: self.listener.try_clone().map_err(wrong)?,
+            address: self.address,
+            connection: None,
+            readable,
+            properties: self.properties.clone(),
+        };
+        server
+            .watch_listener()
+            .map_err(|error| OpenError::new(link, error))?;
         Ok(server)
     }
 
@@ -89,6 +111,13 @@ impl TcpServer {
     }
 }
 
+fn told(clock: &Clock, what: Reception) -> News {
+    News::Arrived {
+        at: clock.now(),
+        what,
+    }
+}
+
 fn not_listening(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::AddrInUse => "something else listens there already".into(),
@@ -115,6 +144,10 @@ impl Port for TcpServer {
         let Some(connection) = &mut self.connection else {
             return Ok(sent);
         };
+        if *what == Transmission::Close {
+            self.hang_up()?;
+            return Ok(sent);
+        }
         match connection.send(what) {
             Ok(Given::Sent) => Ok(sent),
             Ok(Given::Busy) => Err(SendError::Busy),
@@ -132,10 +165,16 @@ impl Port for TcpServer {
     fn take(&mut self, clock: &mut Clock, news: &mut Vec<News>) -> Result<(), LinkError> {
         if self.connection.is_none() {
             self.accept()?;
+            if self.connection.is_some() {
+                news.push(told(clock, Reception::Connected));
+            }
         }
         let connection = self.connection.as_mut();
         match connection.map(|connection| connection.take(clock, news)) {
-            Some(Err(_)) => self.hang_up(),
+            Some(Err(_)) => {
+                news.push(told(clock, Reception::Closed));
+                self.hang_up()
+            }
             Some(Ok(())) | None => Ok(()),
         }
     }

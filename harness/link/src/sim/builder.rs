@@ -6,8 +6,9 @@ use super::can::CanBus;
 use super::lane::SimLane;
 use super::medium::Medium;
 use super::serial::SerialLine;
+use super::stream::Stream;
 use super::world::World;
-use crate::{Line, Participant, PortIndex, PortProperties, SerialSettings};
+use crate::{Framing, Line, Participant, PortIndex, PortProperties, SerialSettings};
 
 /// Puts a [`SimLane`] together: first the media, then who is on them.
 #[derive(Default)]
@@ -35,14 +36,21 @@ impl Builder {
         self.add(name, medium, Line::Serial(settings))
     }
 
+    /// A connection of the tester's, in the role `name`.
+    pub fn connection(&mut self, name: &str, framing: Framing) -> PortIndex {
+        let medium = Medium::Stream(Stream::default());
+        self.add(name, medium, Line::Stream(framing))
+    }
+
     fn add(&mut self, name: &str, medium: Medium, line: Line) -> PortIndex {
+        let sets_bit_rate = !matches!(line, Line::Stream(_));
         self.ports.push(PortProperties {
             name: name.to_owned(),
             link: "sim:".to_owned(),
             line,
             timestamps: "simulated",
             uncertainty: Duration::ZERO,
-            sets_bit_rate: true,
+            sets_bit_rate,
             tells_departure: false,
         });
         PortIndex(self.world.add_bus(medium, line))

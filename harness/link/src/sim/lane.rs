@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
+use super::medium::Medium;
 use super::world::{Hung, World};
+use crate::lane::not_a_connection;
 use crate::{
-    Arrival, CompanionIndex, Instant, Lane, Line, LinkError, NotOffered, Participant, PortIndex,
-    PortProperties, Sent, State, Stimulus, StimulusError, StimulusKind, Transmission,
+    Arrival, CompanionIndex, Farewell, Instant, Lane, Line, LinkError, NotOffered, Participant,
+    PortIndex, PortProperties, Sent, State, Stimulus, StimulusError, StimulusKind, Transmission,
 };
 
 /// How long a CAN frame of the tester's may wait for its start: for the bus, and for a node to acknowledge it.
@@ -18,6 +20,8 @@ pub struct SimLane {
     /// The device's place in the world.
     device: Option<usize>,
     attached: usize,
+    /// The ports of connections that were opened beside the first.
+    further: Vec<usize>,
 }
 
 impl SimLane {
@@ -27,6 +31,7 @@ impl SimLane {
             ports,
             device,
             attached: 0,
+            further: Vec::new(),
         }
     }
 
@@ -52,6 +57,10 @@ impl SimLane {
     fn wrong_kind(&self, port: usize) -> LinkError {
         let port = self.name(port);
         LinkError::WrongKind { port }
+    }
+
+    fn is_closed(&self, port: usize) -> bool {
+        matches!(self.world.medium(port), Some(Medium::Stream(stream)) if stream.is_closed())
     }
 
     fn no_such_port(&self, port: usize) -> LinkError {
@@ -85,10 +94,13 @@ impl Lane for SimLane {
         if properties.line == Line::Off {
             return Err(self.down(port, "the tester's port is switched off"));
         }
+        if self.is_closed(port) {
+            return Err(self.down(port, "the connection is closed"));
+        }
         self.world.run_to(at).map_err(|hung| self.hung(&hung))?;
         let give_up = match what {
             Transmission::Frame(_) => self.world.now() + GIVE_UP,
-            Transmission::Characters(_) => Instant::NEVER,
+            Transmission::Characters(_) | Transmission::Close => Instant::NEVER,
         };
         match self.world.send(port, what, give_up) {
             Ok(Some(sent)) => Ok(sent),
@@ -159,6 +171,37 @@ impl Lane for SimLane {
 
     fn detach(&mut self, companion: CompanionIndex) {
         self.world.remove_companion(companion);
+    }
+
+    fn connect(&mut self, port: PortIndex, name: &str) -> Result<PortIndex, LinkError> {
+        let base = self.ports.get(port.0);
+        let base = base.filter(|base| matches!(base.line, Line::Stream(_)));
+        let (Some(base), Some(device)) = (base.cloned(), self.device) else {
+            return Err(not_a_connection(&self.ports, port));
+        };
+        let closed = self.further.iter().copied();
+        let place = match closed.into_iter().find(|port| self.is_closed(*port)) {
+            Some(place) => place,
+            None => {
+                let place = self.world.add_connection(device, base.line);
+                self.ports.push(base);
+                self.further.push(place);
+                place
+            }
+        };
+        self.ports[place].name = name.to_owned();
+        self.world.open_connection(place);
+        Ok(PortIndex(place))
+    }
+
+    fn disconnect(&mut self, port: PortIndex, how: Farewell) -> Result<(), LinkError> {
+        if !self.further.contains(&port.0) {
+            return Err(not_a_connection(&self.ports, port));
+        }
+        if !self.is_closed(port.0) {
+            self.world.close_connection(port.0, how);
+        }
+        Ok(())
     }
 
     fn device_state(&self) -> State {

@@ -2,6 +2,7 @@
 
 use super::can::CanBus;
 use super::serial::SerialLine;
+use super::stream::Stream;
 use crate::{CompanionIndex, Instant, Line, Reception, Transmission};
 
 /// Who gave something to a node to send.
@@ -32,6 +33,7 @@ pub(super) struct Delivery {
 pub(super) enum Medium {
     Can(CanBus),
     Serial(SerialLine),
+    Stream(Stream),
 }
 
 impl Medium {
@@ -39,6 +41,7 @@ impl Medium {
         match self {
             Medium::Can(bus) => bus.join(),
             Medium::Serial(line) => line.join(),
+            Medium::Stream(stream) => stream.join(),
         }
     }
 
@@ -46,6 +49,7 @@ impl Medium {
         match self {
             Medium::Can(bus) => bus.set_line(node, line, now),
             Medium::Serial(serial) => serial.set_line(node, line, now),
+            Medium::Stream(stream) => stream.set_line(node, line),
         }
     }
 
@@ -55,7 +59,7 @@ impl Medium {
             Line::Off => true,
             Line::Can { .. } => matches!(self, Medium::Can(_)),
             Line::Serial(_) => matches!(self, Medium::Serial(_)),
-            Line::Stream(_) => false,
+            Line::Stream(_) => matches!(self, Medium::Stream(_)),
         }
     }
 
@@ -63,7 +67,8 @@ impl Medium {
     pub(super) fn carries(&self, what: &Transmission) -> bool {
         match what {
             Transmission::Frame(_) => matches!(self, Medium::Can(_)),
-            Transmission::Characters(_) => matches!(self, Medium::Serial(_)),
+            Transmission::Characters(_) => !matches!(self, Medium::Can(_)),
+            Transmission::Close => false,
         }
     }
 
@@ -74,8 +79,8 @@ impl Medium {
             (Medium::Serial(line), Transmission::Characters(characters)) => {
                 line.push(node, from, &characters, now);
             }
-            (Medium::Can(_), Transmission::Characters(_))
-            | (Medium::Serial(_), Transmission::Frame(_)) => {}
+            (Medium::Stream(stream), what) => stream.push(node, from, what, now),
+            (Medium::Can(_) | Medium::Serial(_), _) => {}
         }
     }
 
@@ -83,6 +88,8 @@ impl Medium {
         match self {
             Medium::Can(bus) => bus.withdraw(node, from),
             Medium::Serial(line) => line.withdraw(node, from),
+            // What was given to a connection is on its way.
+            Medium::Stream(_) => {}
         }
     }
 
@@ -90,6 +97,7 @@ impl Medium {
         match self {
             Medium::Can(bus) => bus.is_sending(node),
             Medium::Serial(line) => line.is_sending(node),
+            Medium::Stream(_) => false,
         }
     }
 
@@ -97,15 +105,15 @@ impl Medium {
     pub(super) fn starts_at(&self, now: Instant) -> Instant {
         match self {
             Medium::Can(bus) => bus.starts_at(now),
-            // Nobody waits for a serial line to be idle.
-            Medium::Serial(_) => Instant::NEVER,
+            // Nobody waits for a serial line or a connection to be idle.
+            Medium::Serial(_) | Medium::Stream(_) => Instant::NEVER,
         }
     }
 
     pub(super) fn start(&mut self, now: Instant) {
         match self {
             Medium::Can(bus) => bus.start(now),
-            Medium::Serial(_) => {}
+            Medium::Serial(_) | Medium::Stream(_) => {}
         }
     }
 
@@ -113,6 +121,7 @@ impl Medium {
         match self {
             Medium::Can(bus) => bus.ends_at(),
             Medium::Serial(line) => line.ends_at(),
+            Medium::Stream(stream) => stream.ends_at(),
         }
     }
 
@@ -120,6 +129,7 @@ impl Medium {
         match self {
             Medium::Can(bus) => bus.end(),
             Medium::Serial(line) => line.end(),
+            Medium::Stream(stream) => stream.end(),
         }
     }
 
@@ -132,6 +142,7 @@ impl Medium {
             (Medium::Serial(line), Line::Serial(settings), Reception::Character(character)) => line
                 .hears(node, settings, delivery.start, character)
                 .map(Reception::Character),
+            (Medium::Stream(stream), _, what) => stream.hears(node).then_some(what),
             _ => None,
         }
     }

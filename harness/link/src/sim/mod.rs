@@ -31,7 +31,12 @@
 //! - Where two send at once, both their characters arrive spoilt. So does a character from a node that is set
 //!   differently, and one during which either side was set differently or its sender switched off.
 //!
-//! # For both
+//! # On a connection
+//! - What is sent arrives 100 us later, in order, at the other end alone. Further connections to the same device are
+//!   opened by [`crate::Lane::connect`]; each is a further port of the device, behind those that it has by itself, and
+//!   the device is told that it is there, and that it was closed. A device that is switched off is not told.
+//!
+//! # For all
 //! - A participant that is [`crate::Line::Off`] neither hears nor sends, and what it had to send is lost. What it
 //!   sends on a port that is connected to nothing, or cannot carry it, is lost too.
 //! - Companions share the tester's node and its queue with [`crate::Lane::send`], and are set as it is, except that
@@ -45,6 +50,7 @@ mod can;
 mod lane;
 mod medium;
 mod serial;
+mod stream;
 mod world;
 
 pub use builder::Builder;

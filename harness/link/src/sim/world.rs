@@ -3,9 +3,10 @@
 use std::collections::VecDeque;
 
 use super::medium::{Delivery, Medium, Source};
+use super::stream::Stream;
 use crate::{
-    Arrival, CompanionIndex, Instant, Line, Origin, Outbox, Participant, PortIndex, Reception,
-    Sent, Transmission,
+    Arrival, CompanionIndex, Farewell, Instant, Line, Origin, Outbox, Participant, PortIndex,
+    Reception, Sent, Transmission,
 };
 
 /// How often participants may be woken without the clock moving on.
@@ -106,6 +107,40 @@ impl World {
         }
         self.seat(participant, seats, Source::Bus);
         member
+    }
+
+    /// A further connection of the tester's to a participant, at a further port of that.
+    pub(super) fn add_connection(&mut self, member: usize, line: Line) -> usize {
+        let bus = self.add_bus(Medium::Stream(Stream::default()), line);
+        let port = self.members[member].seats.len();
+        self.buses[bus].owners.push(Some(Owner { member, port }));
+        let node = self.buses[bus].medium.join();
+        self.members[member].seats.push(Some(Seat { bus, node }));
+        bus
+    }
+
+    /// The participant at the other end is told that there is a connection, if it is on.
+    pub(super) fn open_connection(&mut self, bus: usize) {
+        if let Medium::Stream(stream) = &mut self.buses[bus].medium {
+            stream.open();
+        }
+        let owner = self.buses[bus].owners.get(1).copied().flatten();
+        let Some(Owner { member, port }) = owner else {
+            return;
+        };
+        self.settle(member);
+        if self.members[member].participant.line(port) != Line::Off {
+            self.call(member, |participant, now, out| {
+                participant.receive(now, port, Reception::Connected, out);
+            });
+        }
+    }
+
+    pub(super) fn close_connection(&mut self, bus: usize, how: Farewell) {
+        if let Medium::Stream(stream) = &mut self.buses[bus].medium {
+            stream.close(how, self.now);
+        }
+        self.inbox.retain(|arrival| arrival.port.0 != bus);
     }
 
     pub(super) fn add_companion(
@@ -250,6 +285,7 @@ impl World {
         let left = match &what {
             Transmission::Frame(_) => 1,
             Transmission::Characters(characters) => characters.len(),
+            Transmission::Close => 0,
         };
         self.outgoing = Outgoing { left, start: None };
         self.buses[bus]
@@ -364,6 +400,7 @@ impl World {
     /// Something has left through the tester's node.
     fn sent(&mut self, bus: usize, delivery: Delivery) {
         match delivery.from {
+            Source::Tester if delivery.what == Reception::Closed => {}
             Source::Tester => {
                 self.outgoing.left = self.outgoing.left.saturating_sub(1);
                 self.outgoing.start.get_or_insert(delivery.start);

@@ -5,6 +5,7 @@
 mod actor;
 mod can;
 mod companions;
+mod connections;
 mod lane;
 mod properties;
 mod serial;

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use fieldproof_link::sim::{Builder, SimLane};
 use fieldproof_link::{
-    Character, FaultyLine, Instant, Lane, Line, LineFault, Origin, Parity, PortIndex, Reception,
-    SerialSettings, Transmission,
+    BusError, Character, FaultyLine, Instant, Lane, Line, LineFault, Origin, Parity, PortIndex,
+    Reception, SerialSettings, Transmission,
 };
 
 use crate::actor::{Actor, CAN_500K, Do, MODBUS_9600, ms, received, seen, transmission, us};
@@ -57,7 +57,7 @@ fn characters(lane: &mut impl Lane) -> Vec<(u8, bool)> {
 #[test]
 fn every_second_frame_is_lost() {
     let drop = LineFault::Drop { every: every(2) };
-    let mut lane = FaultyLine::new(can_lane(), PORT, drop);
+    let mut lane = FaultyLine::new(Box::new(can_lane()), PORT, drop);
     let expected = [(us(1_100), received("000#")), (us(3_096), received("200#"))];
     assert_eq!(arrivals(&mut lane, ms(10)), expected);
 }
@@ -65,14 +65,17 @@ fn every_second_frame_is_lost() {
 #[test]
 fn another_port_is_whole() {
     let drop = LineFault::Drop { every: every(1) };
-    let mut lane = FaultyLine::new(can_lane(), PortIndex(1), drop);
+    let mut lane = FaultyLine::new(Box::new(can_lane()), PortIndex(1), drop);
     assert_eq!(arrivals(&mut lane, ms(10)).len(), 3);
 }
 
 #[test]
 fn a_late_frame_is_late_and_keeps_its_place() {
-    let delay = LineFault::Delay(Duration::from_millis(1));
-    let mut lane = FaultyLine::new(can_lane(), PORT, delay);
+    let delay = LineFault::Delay {
+        every: every(1),
+        by: Duration::from_millis(1),
+    };
+    let mut lane = FaultyLine::new(Box::new(can_lane()), PORT, delay);
     assert_eq!(lane.receive(ms(2)), Ok(None));
     assert_eq!(lane.now(), ms(2));
     let sync = Actor::new(CAN_500K).send(us(2_500), "080#");
@@ -101,22 +104,99 @@ fn flipped_bits_are_noticed_by_parity_if_their_number_is_odd() {
         (Parity::None, 0b001, (2, false)),
     ];
     for (parity, mask, third) in cases {
-        let mut lane = FaultyLine::new(serial_lane(parity), PORT, flip(mask));
+        let mut lane = FaultyLine::new(Box::new(serial_lane(parity)), PORT, flip(mask));
         let expected = [(1, false), (2, false), third, (4, false)];
         assert_eq!(characters(&mut lane), expected);
     }
-    let mut lane = FaultyLine::new(can_lane(), PORT, flip(0xFF));
-    assert_eq!(
-        arrivals(&mut lane, ms(10)),
-        arrivals(&mut can_lane(), ms(10))
-    );
 }
 
 #[test]
 fn what_the_tester_sends_goes_through() {
     let drop = LineFault::Drop { every: every(1) };
-    let mut lane = FaultyLine::new(can_lane(), PORT, drop);
+    let mut lane = FaultyLine::new(Box::new(can_lane()), PORT, drop);
     let sent = lane.send(PORT, ms(5), transmission("000#")).unwrap();
     assert_eq!(sent.end, us(5_100));
     assert_eq!(lane.receive(ms(10)), Ok(None));
+}
+
+/// The device sends 16 bytes in two frames.
+fn full_frames() -> SimLane {
+    let device = Actor::new(CAN_500K)
+        .send(ms(1), "100#0000000000000000")
+        .send(ms(2), "100#0000000000000000");
+    let mut builder = Builder::new();
+    let can = builder.can_bus("can", 500_000);
+    builder.device(device.boxed(), &[can]);
+    builder.build()
+}
+
+fn heard(lane: SimLane, fault: LineFault) -> Vec<Reception> {
+    let mut lane = FaultyLine::new(Box::new(lane), PORT, fault);
+    let all = arrivals(&mut lane, ms(10)).into_iter();
+    all.map(|(_, what)| what).collect()
+}
+
+#[test]
+fn an_adapter_can_damage_a_frame() {
+    let flip = LineFault::Flip {
+        every: every(1),
+        mask: 0x81,
+    };
+    assert_eq!(
+        heard(full_frames(), flip),
+        [
+            received("100#0081000000000000"),
+            received("100#0000810000000000")
+        ]
+    );
+    // Without data there is nothing to be damaged.
+    assert_eq!(heard(can_lane(), flip).len(), 3);
+}
+
+#[test]
+fn frames_arrive_twice() {
+    let double = LineFault::Double { every: every(2) };
+    let expected = ["000#", "100#", "100#", "200#"].map(received);
+    assert_eq!(heard(can_lane(), double), expected);
+}
+
+#[test]
+fn a_late_frame_is_passed_by_others() {
+    let delay = LineFault::Delay {
+        every: every(2),
+        by: Duration::from_millis(5),
+    };
+    let expected = ["000#", "200#", "100#"].map(received);
+    assert_eq!(heard(can_lane(), delay), expected);
+}
+
+#[test]
+fn the_controller_tells_of_errors() {
+    let error = BusError::new(1 << 7, [0; 8]);
+    let disturb = LineFault::Disturb {
+        every: every(3),
+        error,
+    };
+    let came = heard(can_lane(), disturb);
+    assert_eq!(came.len(), 4);
+    assert_eq!(came[2], Reception::BusError(error));
+    assert_eq!(came[3], received("200#"));
+}
+
+#[test]
+fn what_the_tester_sends_is_not_understood() {
+    let deafen = LineFault::Deafen { every: every(2) };
+    let mut builder = Builder::new();
+    let can = builder.can_bus("can", 500_000);
+    let device = Actor::new(CAN_500K);
+    let heard = device.heard();
+    builder.device(device.boxed(), &[can]);
+    let mut lane = FaultyLine::new(Box::new(builder.build()), PORT, deafen);
+    for at in [1, 2, 3] {
+        lane.send(PORT, ms(at), transmission("080#")).unwrap();
+    }
+    lane.receive(ms(10)).unwrap();
+    let heard = heard.lock().unwrap();
+    let came: Vec<Reception> = heard.iter().map(|(_, _, what)| *what).collect();
+    assert_eq!(came, ["080#", "1FFFFFFF#", "080#"].map(received));
 }

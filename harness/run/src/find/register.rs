@@ -28,14 +28,14 @@ pub(super) fn registers(query: &Query, map: &RegisterMap) -> Vec<Columns> {
     found
 }
 
-/// The last address of the row that begins with `first`.
-fn row(query: &Query, table: &RegisterTable, first: &Register) -> Option<u16> {
+/// The last of the row that begins with `first`.
+fn row<'a>(query: &Query, table: &'a RegisterTable, first: &'a Register) -> Option<&'a Register> {
     let mut last = first;
     for _ in 1..query.row.unwrap_or(1) {
         let next = last.addresses().end().checked_add(1)?;
         last = table.register(next).filter(|it| is_so(query, it))?;
     }
-    Some(*last.addresses().end())
+    Some(last)
 }
 
 /// The addresses that are said to be refused, with their table.
@@ -73,8 +73,12 @@ fn is_so(query: &Query, register: &Register) -> bool {
             let allowed = |effect| query.effect.iter().any(|it| it.effect() == effect);
             effects.iter().all(|effect| allowed(*effect))
         });
+    let takes = query.takes.is_none_or(|values| {
+        register.low.is_some_and(|low| low <= values.from)
+            && register.high.is_some_and(|high| high >= values.to)
+    });
     let persists = query.persists.is_none() || query.persists == register.persists;
-    access && of_type && has && effects && persists
+    access && of_type && has && effects && takes && persists
 }
 
 fn is(word: AccessWord, access: Access) -> bool {
@@ -111,7 +115,8 @@ fn above(register: &Register) -> Option<i64> {
     (high < register.kind.highest()).then(|| high + 1)
 }
 
-fn columns(table: Table, register: &Register, last: u16) -> Columns {
+fn columns(table: Table, register: &Register, of_row: &Register) -> Columns {
+    let last = *of_row.addresses().end();
     let mut columns = vec![
         ("", register.address.to_string()),
         ("-name", register.name.clone()),
@@ -134,6 +139,15 @@ fn columns(table: Table, register: &Register, last: u16) -> Columns {
             ("-above", above(register)),
         ];
         for (suffix, number) in numbers {
+            columns.extend(number.map(|it| (suffix, (it & 0xFFFF).to_string())));
+        }
+        let of_last = [
+            ("-last-low", of_row.low),
+            ("-last-high", of_row.high),
+            ("-last-below", below(of_row)),
+            ("-last-above", above(of_row)),
+        ];
+        for (suffix, number) in of_last {
             columns.extend(number.map(|it| (suffix, (it & 0xFFFF).to_string())));
         }
     }

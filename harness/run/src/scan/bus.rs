@@ -79,7 +79,8 @@ impl Bus<'_> {
                     return Ok(Some(News::Came(frame)));
                 }
                 (Reception::BusError(_), _) => self.traffic.bus_errors += 1,
-                (Reception::Character(_), _) | (_, Origin::Companion(_)) => {}
+                (Reception::Character(_) | Reception::Connected | Reception::Closed, _)
+                | (_, Origin::Companion(_)) => {}
             }
         }
         Ok(None)

@@ -68,6 +68,7 @@ pub fn scan_modbus(
         true => every_address(exchange.is_modbus_tcp()),
         false => how.addresses.clone(),
     };
+    let asked = addresses.len();
     for address in addresses {
         if let Some(server) = look(&mut exchange, address, &mut found.noise)? {
             found.servers.push(server);
@@ -80,7 +81,36 @@ pub fn scan_modbus(
             break;
         }
     }
+    if !all && asked > 1 && found.servers.len() == asked && is_one_server(&mut exchange, &found)? {
+        found.every_unit = true;
+        found.servers.truncate(1);
+    }
     Ok(found)
+}
+
+/// Whether what answered everywhere is a single server at a connection: all say the same of themselves, and the units that
+/// nobody else has answer, too.
+fn is_one_server(exchange: &mut Exchange<'_>, found: &ModbusFound) -> Result<bool, LinkError> {
+    let Some(first) = found.servers.first() else {
+        return Ok(false);
+    };
+    let is_like = |other: &FoundServer| {
+        let other = FoundServer {
+            address: first.address,
+            ..other.clone()
+        };
+        other == *first
+    };
+    if !exchange.is_modbus_tcp() || !found.servers.iter().all(is_like) {
+        return Ok(false);
+    }
+    for unit in UNITS_OF_ONE_SERVER {
+        match look(exchange, unit, &mut Vec::new())? {
+            Some(server) if is_like(&server) => {}
+            _ => return Ok(false),
+        }
+    }
+    Ok(true)
 }
 
 /// How many addresses [`scan_modbus`] asks at most if none is given.

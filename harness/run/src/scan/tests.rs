@@ -265,7 +265,7 @@ fn serial_port(kind: &DeviceKind) -> (usize, SerialSettings) {
     let mut ports = kind.ports.iter().enumerate();
     let serial = ports.find_map(|(number, port)| match port.medium {
         Medium::Serial(settings) => Some((number, settings)),
-        Medium::Can { .. } => None,
+        Medium::Can { .. } | Medium::Tcp => None,
     });
     serial.expect("it has a serial port")
 }

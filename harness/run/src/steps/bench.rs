@@ -13,6 +13,18 @@ use crate::undo::Undo;
 /// How long a power cycle keeps the power off.
 const POWER_OFF_TIME: Duration = Duration::from_secs(1);
 
+/// What comes next is nobody's fault if a hand or a command was slow.
+fn in_time(taken: Duration, limit: Duration) -> Result<(), Stop> {
+    match taken <= limit {
+        true => Ok(()),
+        false => Err(Stop::undecided(
+            "giving the stimulus took too long for what comes next",
+            format!("at most {limit:?}"),
+            format!("{taken:?}"),
+        )),
+    }
+}
+
 impl Tester<'_> {
     pub(super) fn stimulate(&mut self, step: &Stimulate) -> Result<(), Stop> {
         match step {
@@ -24,10 +36,15 @@ impl Tester<'_> {
                 self.session.collect_until(off_until)?;
                 self.power(true)
             }
-            Stimulate::ProcessValue { name, to } => self.give(&Stimulus::ProcessValue {
-                name: name.clone(),
-                value: *to,
-            }),
+            Stimulate::ProcessValue { name, to, within } => {
+                let begun = self.session.now();
+                self.give(&Stimulus::ProcessValue {
+                    name: name.clone(),
+                    value: *to,
+                })?;
+                let taken = self.session.now().since(begun);
+                within.map_or(Ok(()), |limit| in_time(taken, limit))
+            }
             Stimulate::Condition { name, active } => {
                 if *active {
                     self.undo.push(Undo::Condition(name.clone()));

@@ -125,7 +125,7 @@ impl Tester<'_> {
             Err(stop) => return stop,
         };
         Stop::mismatch(
-            format!("no frame {} came in time", show_id(pattern.id())),
+            format!("no {} came in time", name_of(pattern)),
             format!("{pattern} within {}", show(within)),
             actual,
             Came::Silence,
@@ -165,7 +165,7 @@ impl Tester<'_> {
         let expected = format!("silence for {}", show(step.lasting));
         match received.message {
             Message::Can(frame) => Err(Stop::mismatch(
-                "something came where silence was expected",
+                format!("{} came where silence was expected", describe_frame(&frame)),
                 expected,
                 format!("{frame}  {}", describe_frame(&frame)),
                 Came::Frame(frame),
@@ -181,7 +181,10 @@ impl Tester<'_> {
 
     /// The port that a suite means when it names none: CAN, or else serial.
     pub(crate) fn main_port(&self) -> Result<PortIndex, Stop> {
-        self.port(self.main_role)
+        match self.main_role {
+            SERIAL => self.modbus_port(),
+            role => self.port(role),
+        }
     }
 }
 
@@ -207,7 +210,10 @@ fn check_meaning(step: &Expect, frame: &Frame) -> Result<(), Stop> {
 /// A frame came under the right identifier that is not the one expected.
 pub(super) fn wrong_frame(pattern: &Pattern, frame: &Frame) -> Stop {
     let stop = Stop::mismatch(
-        "another frame came than expected",
+        format!(
+            "another frame came than expected: {}",
+            describe_frame(frame)
+        ),
         format!("{pattern}{}", describe_pattern(pattern)),
         format!("{frame}  {}", describe_frame(frame)),
         Came::Frame(*frame),
@@ -263,11 +269,41 @@ fn check_named_object(frame: &Frame, index: u16, sub: u8) -> Result<(), Stop> {
         return Ok(());
     }
     Err(Stop::mismatch(
-        "the answer names another object",
+        format!("the answer names another object than {index:04X}h:{sub:02X}"),
         format!("{index:04X}h:{sub:02X}"),
         format!("{:04X}h:{:02X}", named.0, named.1),
         Came::Frame(*frame),
     ))
+}
+
+/// `SDO response for 1017h:00 (58Ah)`, as far as the pattern says it.
+fn name_of(pattern: &Pattern) -> String {
+    let id = show_id(pattern.id());
+    let service = match pattern.id() {
+        Id::Standard(standard) => identify(standard).map(|(service, _)| service),
+        Id::Extended(_) => None,
+    };
+    let Some(service) = service else {
+        return format!("frame {id}");
+    };
+    let exact: Vec<u8> = pattern
+        .bytes()
+        .iter()
+        .take_while(|byte| byte.mask() == 0xFF || service == Service::SdoResponse)
+        .map(|byte| byte.value())
+        .collect();
+    let names_object = pattern
+        .bytes()
+        .get(1..4)
+        .is_some_and(|bytes| bytes.iter().all(|byte| byte.mask() == 0xFF));
+    match (service, exact.as_slice()) {
+        (Service::SdoResponse, [_, low, high, sub, ..]) if names_object => {
+            let index = u16::from_le_bytes([*low, *high]);
+            format!("{service} for {index:04X}h:{sub:02X} ({id})")
+        }
+        (Service::ErrorControl, [0]) => format!("boot-up message ({id})"),
+        _ => format!("{service} ({id})"),
+    }
 }
 
 fn show_id(id: Id) -> String {

@@ -44,6 +44,8 @@ impl Tester<'_> {
             Step::Modbus(step) => self.modbus(step),
             Step::SendBytes(step) => self.send_raw_bytes(step),
             Step::ExpectBytes(step) => self.expect_bytes(step),
+            Step::Connect(step) => self.connect(&step.name),
+            Step::Disconnect(step) => self.disconnect(step),
             Step::Stimulate(step) => self.stimulate(step),
             Step::SetBitRate(bit_rate) => self.set_bit_rate(*bit_rate),
             Step::Flood(flood) => self.flood(flood),
@@ -98,6 +100,8 @@ pub(crate) fn check_of(step: &Step) -> Option<&str> {
         | Step::StopSync
         | Step::SendRpdo(_)
         | Step::SendBytes(_)
+        | Step::Connect(_)
+        | Step::Disconnect(_)
         | Step::Stimulate(_)
         | Step::SetBitRate(_)
         | Step::Repeat(_) => None,

@@ -31,7 +31,11 @@ impl Tester<'_> {
         };
         let is_remembered =
             written.is_some_and(|(first, _)| self.remember_registers(first, &before));
-        let answer = self.modbus_exchange(to, &request, within)?;
+        let port = match &step.port {
+            Some(name) => self.port(name)?,
+            None => self.modbus_port()?,
+        };
+        let answer = self.modbus_exchange_on(port, to, &request, within)?;
         if let Some((first, _)) = written {
             match &answer {
                 Some(answer) if is_exception(answer) && is_remembered => self.undo.forget_last(),

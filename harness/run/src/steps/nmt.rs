@@ -11,6 +11,7 @@ use fieldproof_suite::model::{
 use fieldproof_suite::scalar::Tolerance;
 use fieldproof_wire::canopen::nmt::{Command, NmtMessage, State};
 use fieldproof_wire::canopen::{NodeId, Service, cob_id, identify};
+use fieldproof_wire::describe::describe_frame;
 
 use crate::limits::{nanoseconds, show};
 use crate::session::{Message, Received};
@@ -218,7 +219,10 @@ impl Tester<'_> {
         };
         if frame.is_remote() || frame.bytes() != [0] {
             return Err(Stop::mismatch(
-                "another message came before the boot-up",
+                format!(
+                    "another message came before the boot-up: {}",
+                    describe_frame(&frame)
+                ),
                 expected,
                 frame.to_string(),
                 Came::Frame(frame),
@@ -272,7 +276,10 @@ impl Tester<'_> {
             let expected = wire_state(step.state);
             if frame.bytes() != [expected.code()] {
                 return Err(Stop::mismatch(
-                    "the heartbeat carries another state",
+                    format!(
+                        "the heartbeat carries another state than {}",
+                        name(step.state)
+                    ),
                     format!("{:02X}h ({})", expected.code(), name(step.state)),
                     frame.to_string(),
                     Came::Frame(frame),

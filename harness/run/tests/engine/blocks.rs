@@ -68,7 +68,7 @@ fn a_right_upload_passes_and_a_wrong_one_says_what_is_wrong() {
         ),
         (
             &[("581#C608100008000000", "581#C609100008000000")],
-            "the answer to the read names another object",
+            "the answer to the read names another object: 1009h:00, and not 1008h:00",
         ),
     ];
     for (changes, what) in wrong {

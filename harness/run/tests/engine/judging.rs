@@ -72,7 +72,10 @@ fn an_answer_that_comes_twice_fails() {
     let played = Setup::default().play(twice, READ);
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "an unexpected SDO answer came")
+        (
+            Verdict::Fail,
+            "an unexpected SDO answer came: SDO value 2000h:00 = 00000005h"
+        )
     );
 }
 
@@ -99,7 +102,12 @@ fn an_emcy_is_noted_and_fails_only_where_it_is_forbidden() {
 
     let forbidding = READ.replace("    steps:", "    forbids: [emergency]\n    steps:");
     let played = Setup::default().play(device(), &forbidding);
-    assert_eq!(played.verdict(), (Verdict::Fail, "an unexpected EMCY came"));
+    let (verdict, what) = played.verdict();
+    assert_eq!(verdict, Verdict::Fail);
+    assert!(
+        what.starts_with("an unexpected EMCY came: EMCY of node 1: 0010h"),
+        "{what}"
+    );
 }
 
 #[test]
@@ -107,7 +115,10 @@ fn an_abort_must_name_the_object_that_was_asked_for() {
     let played = Setup::default().play(answering(&["581#8001200011000906"]), READ);
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "the abort names another object")
+        (
+            Verdict::Fail,
+            "the abort names another object: 2001h:00, and not 2000h:00"
+        )
     );
 }
 
@@ -117,7 +128,10 @@ fn a_spontaneous_boot_up_fails() {
     let played = Setup::default().play(booting, READ);
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "an unexpected error control message came")
+        (
+            Verdict::Fail,
+            "an unexpected error control message came: boot-up of node 1"
+        )
     );
 }
 
@@ -150,7 +164,10 @@ fn late_and_never_are_told_apart() {
     let late = Setup::default().play(after(30), expecting);
     assert_eq!(
         late.verdict(),
-        (Verdict::Fail, "no frame 581h came in time")
+        (
+            Verdict::Fail,
+            "no SDO response for 2000h:00 (581h) came in time"
+        )
     );
     assert!(
         late.case().failures[0]
@@ -221,7 +238,10 @@ fn an_expectation_does_not_look_past_the_last_send() {
     );
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "no frame 581h came in time")
+        (
+            Verdict::Fail,
+            "no SDO response for 2000h:00 (581h) came in time"
+        )
     );
 }
 
@@ -328,7 +348,7 @@ fn a_heartbeat_with_a_state_the_node_was_not_told_fails() {
     let played = setup.play(device(), cases);
     assert_eq!(
         played.verdict().1,
-        "an unexpected error control message came"
+        "an unexpected error control message came: heartbeat operational"
     );
 }
 
@@ -474,7 +494,10 @@ fn periods_of_frames_are_measured() {
     assert_eq!(verdict([10, 20, 35, 45], "080#").0, Verdict::Fail);
     assert_eq!(
         verdict([10, 20, 30, 40], "080#01"),
-        (Verdict::Fail, "another frame came than expected".to_owned())
+        (
+            Verdict::Fail,
+            "another frame came than expected: SYNC 1".to_owned()
+        )
     );
     assert_eq!(
         verdict([10, 20, 30, 90], "080#"),

@@ -260,6 +260,7 @@ impl Setup {
             fixed_rates: Default::default(),
             ports: ["can".to_owned()].into(),
             modbus_tcp: [].into(),
+            streams: [].into(),
             stimuli: [].into(),
             permits: self.permits.iter().copied().collect(),
             depth: Depth::Default,

@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use fieldproof_devices::{Settings, kind};
 use fieldproof_link::real::serve::serve;
-use fieldproof_link::real::{NoStimuli, RealLane, Tcp, TcpServer};
-use fieldproof_link::{Connected, Framing};
+use fieldproof_link::real::{NoStimuli, Port, RealLane, Tcp, TcpServer};
+use fieldproof_link::{Connected, Framing, Participant};
 use fieldproof_record::{CaseFinished, Event};
 use fieldproof_run::{Bench, Known, LaneJob, LaneOutcome, fill, play_lane};
 use fieldproof_suite::device::DeviceDescription;
@@ -46,6 +46,22 @@ fn source(path: &str) -> SourceFile {
 /// The description of a device that is shipped.
 pub(crate) fn description(device: &str) -> DeviceDescription {
     load_device(&source(&format!("fixtures/devices/{device}/device.yaml"))).unwrap()
+}
+
+/// The suite of Modbus TCP.
+pub(crate) fn tcp_suite() -> Vec<Suite> {
+    let loaded = load(&[source("suites/modbus/tcp.yaml")]);
+    assert!(loaded.diagnostics.is_empty(), "{:#?}", loaded.diagnostics);
+    let device = "modbus-complete";
+    let path = format!("fixtures/devices/{device}/registers.yaml");
+    let registers = load_registers(&source(&path)).unwrap();
+    let known = Known {
+        registers: Some(&registers),
+        ..Known::default()
+    };
+    let device = description(device);
+    let filled = |suite| fill(suite, &device, known);
+    loaded.suites.iter().map(filled).collect()
 }
 
 /// Every Modbus suite for a device that is shipped.
@@ -97,13 +113,38 @@ impl Served {
         };
         let participant = (kind.build)(&settings).unwrap();
         let serial = kind.ports.iter().position(|port| port.role == "serial");
-        let connected = Connected::new(participant, vec![serial.unwrap()]);
         let server = TcpServer::listen("serial", "127.0.0.1:0", framing).unwrap();
+        let ports: Vec<Box<dyn Port>> = Vec::new();
+        Served::serve(participant, server, ports, vec![serial.unwrap()])
+    }
+
+    /// Serves the port of Modbus TCP that a device has, on several connections at once.
+    pub(crate) fn start_with_connections(device: &str) -> Served {
+        let kind = kind(device).unwrap();
+        let participant = (kind.build)(&Settings::default()).unwrap();
+        let tcp = kind.ports.iter().position(|port| port.role == "tcp");
+        let server = TcpServer::listen("tcp", "127.0.0.1:0", Framing::ModbusTcp).unwrap();
+        let further = (0..7).map(|_| Box::new(server.beside().unwrap()) as Box<dyn Port>);
+        let further: Vec<Box<dyn Port>> = further.collect();
+        let behind = kind.ports.len();
+        let numbers = std::iter::once(tcp.unwrap()).chain(behind..behind + further.len());
+        Served::serve(participant, server, further, numbers.collect())
+    }
+
+    fn serve(
+        participant: Box<dyn Participant>,
+        server: TcpServer,
+        further: Vec<Box<dyn Port>>,
+        numbers: Vec<usize>,
+    ) -> Served {
+        let connected = Connected::new(participant, numbers);
         let host_port = server.address().to_string();
         let stop = Arc::new(AtomicBool::new(false));
         let told = Arc::clone(&stop);
         let thread = thread::spawn(move || {
-            serve(Box::new(connected), vec![Box::new(server)], &mut (), &told).unwrap();
+            let first: Box<dyn Port> = Box::new(server);
+            let ports = std::iter::once(first).chain(further).collect();
+            serve(Box::new(connected), ports, &mut (), &told).unwrap();
         });
         Served {
             host_port,
@@ -134,9 +175,10 @@ pub(crate) fn play(
     let mut lane = RealLane::new(vec![Box::new(port)], Box::new(NoStimuli));
     let is_tcp = framing == Framing::ModbusTcp;
     let bench = Bench {
-        fixed_rates: [].into(),
+        fixed_rates: ["serial".to_owned()].into(),
         ports: ["serial".to_owned()].into(),
         modbus_tcp: is_tcp.then(|| "serial".to_owned()).into_iter().collect(),
+        streams: ["serial".to_owned()].into(),
         stimuli: [].into(),
         depth: Depth::Default,
         permits: [

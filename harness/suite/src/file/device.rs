@@ -69,6 +69,10 @@ pub(crate) struct PortFile {
     /// The bit rate of a serial port.
     #[serde(default)]
     serial: Option<BitRate>,
+    /// Where a port of Modbus TCP listens.
+    #[serde(default)]
+    #[schemars(range(min = 1))]
+    tcp: Option<u16>,
     /// Its parity; even where nothing is said, as the serial-line specification has it.
     #[serde(default)]
     parity: Option<Parity>,
@@ -83,18 +87,20 @@ pub(crate) struct PortFile {
 
 impl PortFile {
     pub(crate) fn lower(self) -> Result<PortDescription, Wrong> {
-        match (self.can, self.serial) {
-            (Some(BitRate(bit_rate)), None) => {
-                if self.parity.is_some() || self.stop_bits.is_some() || self.companion.is_some() {
-                    return Err(Wrong::new(
-                        code::KEYS_TOGETHER,
-                        "a CAN port has no parity, no stop bits and no companion",
-                        "expected `can` alone",
-                    ));
-                }
-                Ok(PortDescription::Can { bit_rate })
-            }
-            (None, Some(BitRate(baud))) => {
+        let is_set = self.parity.is_some() || self.stop_bits.is_some() || self.companion.is_some();
+        let alone = |what: &str, key: &str| {
+            Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                format!("a {what} port has no parity, no stop bits and no companion"),
+                format!("expected `{key}` alone"),
+            ))
+        };
+        match (self.can, self.serial, self.tcp) {
+            (Some(_), None, None) if is_set => alone("CAN", "can"),
+            (None, None, Some(_)) if is_set => alone("TCP", "tcp"),
+            (Some(BitRate(bit_rate)), None, None) => Ok(PortDescription::Can { bit_rate }),
+            (None, None, Some(port)) => Ok(PortDescription::Tcp { port }),
+            (None, Some(BitRate(baud)), None) => {
                 let stop_bits = self.stop_bits.unwrap_or(1);
                 if !(1..=2).contains(&stop_bits) {
                     return Err(Wrong::new(
@@ -112,8 +118,8 @@ impl PortFile {
             }
             _ => Err(Wrong::new(
                 code::KEYS_TOGETHER,
-                "a port is either CAN or serial",
-                "expected `can` or `serial`",
+                "a port is either CAN, serial or TCP",
+                "expected `can`, `serial` or `tcp`",
             )),
         }
     }

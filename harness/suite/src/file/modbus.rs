@@ -37,6 +37,9 @@ pub(crate) struct ModbusFile {
     /// Whom it is sent to, if not the device's address; 0 is everybody.
     #[serde(default)]
     to: Option<u8>,
+    /// The connection it goes over; else the device's own port.
+    #[serde(default)]
+    port: Option<String>,
     /// How long after the request; else what the description promises.
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
@@ -144,6 +147,7 @@ impl TryFrom<ModbusFile> for Modbus {
             request,
             expect: file.expect,
             to: file.to,
+            port: file.port,
             within: file.within,
             save: file.save,
             observe: file.observe,

@@ -2,8 +2,8 @@
 
 use crate::forms::TwoForms;
 use crate::model::{
-    Crc, Expect, ExpectBootUp, ExpectBytes, ExpectSilence, Judge, Nmt, NmtAddress, NmtCommand,
-    Send, SendBytes, Sync,
+    Connect, Crc, Disconnect, Expect, ExpectBootUp, ExpectBytes, ExpectSilence, Judge, Nmt,
+    NmtAddress, NmtCommand, Send, SendBytes, Sync,
 };
 use crate::scalar::{BytePatternText, Bytes, FrameText, PatternText, Time};
 
@@ -49,9 +49,19 @@ short_form! {
         node: None,
     };
     Sync from (): |()| Sync { count: 1, period: std::time::Duration::ZERO };
-    SendBytes from Bytes: |bytes| SendBytes { bytes, crc: Crc::Given, port: None };
+    SendBytes from Bytes: |bytes| SendBytes {
+        bytes,
+        crc: Crc::Given,
+        then: Vec::new(),
+        pause: None,
+        spoil: None,
+        port: None,
+    };
+    Connect from String: |name| Connect { name };
+    Disconnect from String: |name| Disconnect { name, reset: false };
     ExpectBytes from BytePatternText: |bytes| ExpectBytes {
         bytes,
+        or: Vec::new(),
         within: None,
         port: None,
         decode: Vec::new(),

@@ -1,11 +1,15 @@
 //! What the bench does to the device, by the key that says what.
 
+use std::time::Duration;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::code;
 use crate::model::{CompanionStimulus, PowerAction, Stimulate};
 use crate::problem::Wrong;
+use crate::read_with::optional_time;
+use crate::scalar::Time;
 
 /// A stimulus: `{power: off}`, `{process-value: .., to: ..}`, `{condition: .., active: ..}` or `{setting: .., to: ..}`;
 /// with `companion` the first two of them, done to what the tester plays on that port.
@@ -34,6 +38,10 @@ pub(crate) struct StimulateFile {
     /// Whether the condition holds from now on.
     #[serde(default)]
     active: Option<bool>,
+    /// How long giving a process value may take, where what comes next depends on it.
+    #[serde(default, deserialize_with = "optional_time")]
+    #[schemars(with = "Option<Time>")]
+    within: Option<Duration>,
 }
 
 impl TryFrom<StimulateFile> for Stimulate {
@@ -48,7 +56,15 @@ impl TryFrom<StimulateFile> for Stimulate {
             setting,
             to,
             active,
+            within,
         } = file;
+        if within.is_some() && (process_value.is_none() || companion.is_some()) {
+            return Err(Wrong::new(
+                code::KEYS_TOGETHER,
+                "`within` belongs to a process value",
+                "expected it beside `process-value`",
+            ));
+        }
         if let Some(port) = companion {
             let stimulus = match (power, process_value, condition, setting, to, active) {
                 (Some(action), None, None, None, None, None) => CompanionStimulus::Power(action),
@@ -68,7 +84,7 @@ impl TryFrom<StimulateFile> for Stimulate {
         match (power, process_value, condition, setting, to, active) {
             (Some(action), None, None, None, None, None) => Ok(Stimulate::Power(action)),
             (None, Some(name), None, None, Some(to), None) => {
-                Ok(Stimulate::ProcessValue { name, to })
+                Ok(Stimulate::ProcessValue { name, to, within })
             }
             (None, None, Some(name), None, None, Some(active)) => {
                 Ok(Stimulate::Condition { name, active })

@@ -131,6 +131,8 @@ fn can_fail(step: &Step) -> bool {
         | Step::StopSync
         | Step::SendRpdo(_)
         | Step::SendBytes(_)
+        | Step::Connect(_)
+        | Step::Disconnect(_)
         | Step::Stimulate(_)
         | Step::SetBitRate(_)
         | Step::Repeat(_) => false,
@@ -148,6 +150,8 @@ fn is_cause(step: &Step) -> bool {
             | Step::ExpectHeartbeat(_)
             | Step::ExpectTpdo(_)
             | Step::ExpectBytes(_)
+            | Step::Connect(_)
+            | Step::Disconnect(_)
             | Step::StopSync
     )
 }
@@ -168,7 +172,11 @@ fn needs_a_cause(protocol: Protocol, step: &Step) -> bool {
 fn check_protocol(protocol: Protocol, step: &Located<Step>, problems: &mut Vec<Problem>) {
     let serial = matches!(
         step.value,
-        Step::Modbus(_) | Step::SendBytes(_) | Step::ExpectBytes(_)
+        Step::Modbus(_)
+            | Step::SendBytes(_)
+            | Step::ExpectBytes(_)
+            | Step::Connect(_)
+            | Step::Disconnect(_)
     );
     let either = matches!(step.value, Step::ExpectSilence(_) | Step::Stimulate(_));
     let (wrong, speaks, other) = match protocol {

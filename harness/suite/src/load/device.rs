@@ -85,7 +85,11 @@ fn read(root: &Node, problems: &mut Vec<Problem>) -> Option<DeviceDescription> {
         side_has_port("canopen", "can", &ports, ports_at, problems);
     }
     if file.modbus.is_some() {
-        side_has_port("modbus", "serial", &ports, ports_at, problems);
+        let role = match ports.contains_key("tcp") && !ports.contains_key("serial") {
+            true => "tcp",
+            false => "serial",
+        };
+        side_has_port("modbus", role, &ports, ports_at, problems);
     }
     let deviates = file.deviates.into_iter();
     Some(DeviceDescription {
@@ -116,7 +120,8 @@ fn side_has_port(
 ) {
     let carries = |port: &PortDescription| match port {
         PortDescription::Can { .. } => side == "canopen",
-        PortDescription::Serial { .. } => side == "modbus",
+        PortDescription::Serial { .. } => side == "modbus" && role == "serial",
+        PortDescription::Tcp { .. } => side == "modbus" && role == "tcp",
     };
     if ports.get(role).is_some_and(carries) {
         return;

@@ -244,8 +244,16 @@ fn sample_register(query: &Query) -> Columns {
         ("-count", text("1")),
         ("-last", text("1")),
     ];
-    let said = query.has.iter().filter_map(|has| has.column());
-    columns.extend(said.map(|suffix| (suffix, text("1"))));
+    let said = || query.has.iter().filter_map(|has| has.column());
+    columns.extend(said().map(|suffix| (suffix, text("1"))));
+    let of_last = said().filter_map(|suffix| match suffix {
+        "-low" => Some("-last-low"),
+        "-high" => Some("-last-high"),
+        "-below" => Some("-last-below"),
+        "-above" => Some("-last-above"),
+        _ => None,
+    });
+    columns.extend(of_last.map(|suffix| (suffix, text("1"))));
     columns
 }
 

@@ -1,5 +1,6 @@
 //! The raw level: CAN frames, bytes on a serial line, and what their bytes mean.
 
+use std::num::NonZeroU16;
 use std::time::Duration;
 
 use schemars::JsonSchema;
@@ -8,7 +9,7 @@ use serde::Deserialize;
 use super::Judge;
 use crate::file::{DecodeFile, ExpectFile};
 use crate::forms::OneOrMany;
-use crate::read_with::{can_ids, decode_big_endian, optional_time, time};
+use crate::read_with::{can_ids, decode_big_endian, one_or_many, optional_time, time};
 use crate::scalar::{
     BytePatternText, Bytes, CanId, Decimal, FrameText, ObjectAddress, PatternText, Time, Tolerance,
 };
@@ -81,9 +82,72 @@ pub struct SendBytes {
     /// What is done about the CRC.
     #[serde(default)]
     pub crc: Crc,
-    /// The port; else `serial`.
+    /// What follows without a silence.
+    #[serde(default, deserialize_with = "one_or_many")]
+    #[schemars(with = "OneOrMany<Piece>")]
+    pub then: Vec<Piece>,
+    /// A silence among them; else they follow each other.
+    #[serde(default)]
+    pub pause: Option<Pause>,
+    /// The character, from 0, whose parity bit is wrong.
+    #[serde(default)]
+    pub spoil: Option<u16>,
+    /// The port, or a connection; else `serial`.
     #[serde(default)]
     pub port: Option<String>,
+}
+
+/// Bytes that follow others.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Piece {
+    /// The bytes.
+    pub bytes: Bytes,
+    /// What is done about their CRC.
+    #[serde(default)]
+    pub crc: Crc,
+}
+
+/// A silence among bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Pause {
+    /// After so many bytes.
+    #[schemars(range(min = 1))]
+    pub after: NonZeroU16,
+    /// And again after as many.
+    #[serde(default)]
+    pub again: bool,
+    /// How long.
+    pub lasting: PauseLength,
+}
+
+/// `20 ms`, or `2.5 characters` of a serial line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PauseLength {
+    /// A time.
+    Time(Duration),
+    /// So many thousandths of a character.
+    Characters(u32),
+}
+
+/// Opens connections of Modbus TCP, which steps then name as `port`; closed after the case. Short form: the name alone.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Connect {
+    /// What the case calls it.
+    pub name: String,
+}
+
+/// Ends a connection. Short form: the name alone.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct Disconnect {
+    /// What the case calls it.
+    pub name: String,
+    /// With a reset, and not in order.
+    #[serde(default)]
+    pub reset: bool,
 }
 
 /// What is done about the CRC of bytes.
@@ -108,11 +172,15 @@ pub enum Crc {
 pub struct ExpectBytes {
     /// The whole frame with its CRC.
     pub bytes: BytePatternText,
+    /// What may come in its place: other bytes, or `silence`.
+    #[serde(default, deserialize_with = "one_or_many")]
+    #[schemars(with = "OneOrMany<OtherBytes>")]
+    pub or: Vec<OtherBytes>,
     /// How long after the last send; else what the description promises.
     #[serde(default, deserialize_with = "optional_time")]
     #[schemars(with = "Option<Time>")]
     pub within: Option<Duration>,
-    /// The port; else `serial`.
+    /// The port, or a connection; else `serial`.
     #[serde(default)]
     pub port: Option<String>,
     /// What its bytes must mean.
@@ -122,6 +190,15 @@ pub struct ExpectBytes {
     /// The name of this check, for documented deviations.
     #[serde(default)]
     pub check: Option<String>,
+}
+
+/// What may come in the place of bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum OtherBytes {
+    /// `silence`: nothing.
+    Silence,
+    /// Other bytes.
+    Bytes(BytePatternText),
 }
 
 /// What some bytes of a frame must mean: taken as a number, scaled, compared.

@@ -20,6 +20,8 @@ pub struct Modbus {
     pub expect: ModbusExpectation,
     /// Whom it is sent to, if not the device's address.
     pub to: Option<u8>,
+    /// The connection it goes over; else the device's own port.
+    pub port: Option<String>,
     /// How long after the request; else what the description promises.
     pub within: Option<Duration>,
     /// Keeps the first register under this name for later steps.

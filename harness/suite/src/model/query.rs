@@ -50,6 +50,8 @@ pub struct Query {
     #[serde(deserialize_with = "one_or_many")]
     #[schemars(with = "OneOrMany<EffectWord>")]
     pub effect: Vec<EffectWord>,
+    /// Registers whose limits let all values from the first to the last through.
+    pub takes: Option<ValueRange>,
     /// So many of them must follow each other without a gap; the first is meant.
     #[schemars(range(min = 1))]
     pub row: Option<u16>,
@@ -268,6 +270,16 @@ pub struct SizeRange {
     pub from: Option<u32>,
     /// At most so many.
     pub to: Option<u32>,
+}
+
+/// A range of values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ValueRange {
+    /// The lowest.
+    pub from: i64,
+    /// The highest.
+    pub to: i64,
 }
 
 /// What a description says of an object.
@@ -493,6 +505,10 @@ impl fmt::Display for Query {
                 or(words.collect())
             ));
         }
+        said.extend(
+            self.takes
+                .map(|values| format!("that takes {} to {}", values.from, values.to)),
+        );
         said.extend(self.row.map(|row| format!("in a row of {row}")));
         said.extend(self.persists.map(|persists| {
             match persists {

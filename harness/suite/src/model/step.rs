@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    DriveTarget, Expect, ExpectBootUp, ExpectBytes, ExpectDrive, ExpectHeartbeat, ExpectMapping,
-    ExpectSilence, ExpectState, ExpectTpdo, Flood, Located, Modbus, Nmt, NmtState, SdoRead,
-    SdoWrite, Send, SendBytes, SendRpdo, StartSync, Stimulate, Sync,
+    Connect, Disconnect, DriveTarget, Expect, ExpectBootUp, ExpectBytes, ExpectDrive,
+    ExpectHeartbeat, ExpectMapping, ExpectSilence, ExpectState, ExpectTpdo, Flood, Located, Modbus,
+    Nmt, NmtState, SdoRead, SdoWrite, Send, SendBytes, SendRpdo, StartSync, Stimulate, Sync,
 };
 use crate::forms::{either, either_schema};
 use crate::read_with::{bit_rate, read_later, times};
@@ -90,6 +90,18 @@ pub enum Step {
         #[serde(deserialize_with = "either")]
         #[schemars(schema_with = "either_schema::<ExpectBytes>")]
         ExpectBytes,
+    ),
+    /// `connect: one`: opens a further connection of Modbus TCP, a port of this name until the case ends.
+    Connect(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<Connect>")]
+        Connect,
+    ),
+    /// `disconnect: one`, or `disconnect: {name: one, reset: true}`.
+    Disconnect(
+        #[serde(deserialize_with = "either")]
+        #[schemars(schema_with = "either_schema::<Disconnect>")]
+        Disconnect,
     ),
     /// `stimulate: {process-value: "6063:00", to: -12013}`.
     Stimulate(Stimulate),

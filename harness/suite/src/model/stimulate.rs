@@ -1,5 +1,7 @@
 //! What the bench does to the device beside the bus.
 
+use std::time::Duration;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -17,6 +19,8 @@ pub enum Stimulate {
         name: String,
         /// The raw value.
         to: i64,
+        /// How long giving it may take, where what comes next depends on it.
+        within: Option<Duration>,
     },
     /// `{condition: hardware-fault, active: true}`; ended after the case.
     Condition {

@@ -8,6 +8,7 @@ use super::number::decimal;
 use super::text::read_as_text;
 use super::{Text, Tolerance};
 use crate::code;
+use crate::model::PauseLength;
 use crate::problem::{Wrong, nearest};
 
 /// Nanoseconds in each unit.
@@ -100,6 +101,31 @@ impl Text for Time {
 
     fn schema() -> Schema {
         json_schema!({"type": "string", "pattern": "^[0-9.]+ ?(us|µs|ms|s|min)$"})
+    }
+}
+
+impl Text for PauseLength {
+    const EXPECTED: &'static str = "a duration such as 20 ms, or 2.5 characters";
+
+    fn parse(text: &str) -> Result<PauseLength, Wrong> {
+        let Some(number) = text.strip_suffix("characters").map(str::trim_end) else {
+            return duration(text).map(PauseLength::Time);
+        };
+        let thousandths = decimal(number).and_then(|(digits, decimals)| {
+            let scale = 10i64.checked_pow(3u32.checked_sub(decimals)?)?;
+            u32::try_from(digits.checked_mul(scale)?).ok()
+        });
+        thousandths.map(PauseLength::Characters).ok_or_else(|| {
+            Wrong::new(
+                code::DURATION,
+                format!("`{text}` is no number of characters"),
+                "expected characters such as 2.5 characters",
+            )
+        })
+    }
+
+    fn schema() -> Schema {
+        json_schema!({"type": "string", "pattern": "^[0-9.]+ ?(us|µs|ms|s|min|characters)$"})
     }
 }
 
@@ -208,11 +234,36 @@ impl Text for BitRate {
     }
 }
 
-read_as_text!(Time, TimeUnit, Tolerance, BitRate);
+read_as_text!(Time, TimeUnit, Tolerance, BitRate, PauseLength);
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_pause_is_a_time_or_characters() {
+        let read = |text| PauseLength::parse(text).ok();
+        assert_eq!(
+            read("20 ms"),
+            Some(PauseLength::Time(Duration::from_millis(20)))
+        );
+        for (text, thousandths) in [
+            ("2.5 characters", 2_500),
+            ("1 characters", 1_000),
+            ("0.125characters", 125),
+        ] {
+            assert_eq!(read(text), Some(PauseLength::Characters(thousandths)));
+        }
+        for text in [
+            "2.5",
+            "characters",
+            "1.2345 characters",
+            "-1 characters",
+            "x characters",
+        ] {
+            assert_eq!(read(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn durations_have_units() {

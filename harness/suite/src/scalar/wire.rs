@@ -6,7 +6,7 @@ use schemars::{Schema, json_schema};
 use super::text::read_as_text;
 use super::{BytePatternText, Bytes, FrameText, ObjectAddress, PatternText, Text};
 use crate::code;
-use crate::model::Alternative;
+use crate::model::{Alternative, OtherBytes};
 use crate::problem::Wrong;
 use crate::read::ask;
 
@@ -123,6 +123,22 @@ impl Text for Alternative {
     }
 }
 
+impl Text for OtherBytes {
+    const ASK: &'static str = ask::HEX;
+    const EXPECTED: &'static str = "bytes such as \"20 03 ?? ??\", or silence";
+
+    fn parse(text: &str) -> Result<OtherBytes, Wrong> {
+        match text {
+            "silence" => Ok(OtherBytes::Silence),
+            _ => BytePatternText::parse(text).map(OtherBytes::Bytes),
+        }
+    }
+
+    fn schema() -> Schema {
+        json_schema!({"type": ["string", "integer"], "pattern": "^([0-9A-Fa-f?. ]*|silence)$"})
+    }
+}
+
 impl Text for Bytes {
     const ASK: &'static str = ask::HEX;
     const EXPECTED: &'static str = "bytes such as \"20 03 00 00\"";
@@ -175,6 +191,7 @@ read_as_text!(
     FrameText,
     PatternText,
     Alternative,
+    OtherBytes,
     Bytes,
     BytePatternText
 );

@@ -111,6 +111,11 @@ impl ObjectFault {
         self.address
     }
 
+    /// The index of the value.
+    pub const fn index(self) -> u16 {
+        self.address.index()
+    }
+
     /// Whether a device with this dictionary can have it, so that it shows.
     pub fn fits(self, dictionary: &Dictionary) -> bool {
         let entry = dictionary.entry(self.address.index(), self.address.sub());
@@ -150,7 +155,8 @@ impl ObjectFault {
     const fn is_plain(self) -> bool {
         !matches!(
             self.address.index(),
-            0x1003 | 0x1010 | 0x1011 | 0x1019 | 0x1020 | 0x1200..=0x1BFF | 0x2025 | 0x3000 | 0x3001
+            0x1003 | 0x1010 | 0x1011 | 0x1019 | 0x1020 | 0x1200
+                ..=0x1BFF | 0x2025 | 0x3000 | 0x3001 | 0x6081 | 0x60FF
         )
     }
 }

@@ -17,6 +17,7 @@ const fn fault(
         breaks,
         words,
         caught_by: "sdo",
+        named: &[],
         apply,
     }
 }

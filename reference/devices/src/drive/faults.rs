@@ -16,6 +16,7 @@ const fn fault(
         breaks,
         words,
         caught_by: "cia402",
+        named: &[],
         apply,
     }
 }

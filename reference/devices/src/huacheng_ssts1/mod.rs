@@ -47,6 +47,8 @@ const FAULTS: &[&[Fault]] = &[
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     modbus::faults::COMMON,
+    modbus::faults::LINE,
+    modbus::faults::WRITES,
     OWN_FAULTS,
     drive::faults::COMMON,
     drive::faults::VALUES,

@@ -19,7 +19,7 @@ pub(crate) const KIND: DeviceKind = DeviceKind {
         role: "serial",
         medium: Medium::Serial(LINE),
     }],
-    faults: &[modbus::faults::COMMON],
+    faults: &[modbus::faults::COMMON, modbus::faults::LINE],
     variants: &[modbus::variants::SLOW],
     build,
 };

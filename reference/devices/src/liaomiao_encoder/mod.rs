@@ -58,6 +58,7 @@ const OWN_FAULTS: &[Fault] = &[
     modbus::faults::SPEED_SIGN_LOST,
     modbus::faults::ADDRESS_CHANGE_NOT_ANSWERED,
     modbus::faults::ADDRESS_CHANGE_ANSWERED_FROM_OLD,
+    modbus::faults::ADDRESS_TEXT_IGNORED,
 ];
 const ENCODER_FAULTS: &[Fault] = behaviour::FAULTS;
 const FAULTS: &[&[Fault]] = &[
@@ -65,6 +66,8 @@ const FAULTS: &[&[Fault]] = &[
     nmt_faults::COMMON,
     error_control_faults::COMMON,
     modbus::faults::COMMON,
+    modbus::faults::LINE,
+    modbus::faults::WRITES,
     OWN_FAULTS,
     lss_faults::EVERY,
     ENCODER_FAULTS,
@@ -104,6 +107,7 @@ const IDENTITY_OF_THE_TEMPLATE: Fault = Fault {
     breaks: "CiA 301: object 1018h, the vendor-ID is the one CiA gave; Liaomiao encoder manual, section 6",
     words: "has left in 1018h what a template had: vendor 0, product 0, revision 1, serial number 1",
     caught_by: "lss",
+    named: &[],
     apply: |behaviour| behaviour.canopen.identity = Some([0, 0, 1, 1]),
 };
 

@@ -5,7 +5,9 @@ use std::time::Duration;
 use fieldproof_link::{NotOffered, Parity, SerialSettings, State, StateName, StopBits};
 
 use super::model::EncoderModel;
-use crate::modbus::{AddressChangeReply, Behaviour, Command, Exception, Registers, SpeedSign};
+use crate::modbus::{
+    AddressChangeReply, Behaviour, Command, Departure, Exception, Registers, SpeedSign,
+};
 
 /// The address the encoder leaves the factory with.
 pub(crate) const ADDRESS: u8 = 0x20;
@@ -40,6 +42,7 @@ const MOST_RPM: i32 = 15_000;
 const RPM: i32 = 10_000;
 
 /// A change of address goes to this address, to function 10h and register 0001h, and carries `addr:` and the new one.
+const ADDRESS_TEXT: usize = 5;
 const ADDRESS_CHANGE: [u8; 12] = *b"\xFF\x10\x00\x01\x00\x03\x06addr:";
 
 /// The codes of the baud register, in the order of the rates.
@@ -252,8 +255,14 @@ impl Registers for EncoderRegisters {
 
     /// The change of address: `FF 10 00 01 00 03 06 61 64 64 72 3A nn`, answered by `nn 10 00 01 00 03`.
     fn command(&mut self, request: &[u8], behaviour: &Behaviour) -> Option<Command> {
-        let &[address] = request.strip_prefix(ADDRESS_CHANGE.as_slice())? else {
-            return None;
+        let unchecked = behaviour.departs(Departure::AddressTextIgnored);
+        let (head, text) = ADDRESS_CHANGE.split_at(ADDRESS_CHANGE.len() - ADDRESS_TEXT);
+        let rest = request.strip_prefix(head)?;
+        let address = match rest {
+            [words @ .., address] if words == text || unchecked && words.len() == text.len() => {
+                *address
+            }
+            _ => return None,
         };
         let Some(address) = unicast(i64::from(address)) else {
             return Some(Command::Silent);

@@ -3,6 +3,8 @@
 
 use std::time::Duration;
 
+use super::{Departure, RegisterFault, RegisterFaultKind, TcpFault};
+
 /// In which order the two bytes of a CRC are sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrcOrder {
@@ -189,6 +191,16 @@ pub struct Behaviour {
     pub unknown_object_answered: bool,
     /// Whether it is not said that more objects follow.
     pub more_follows_missing: bool,
+    /// Legal variant: whether a header of Modbus TCP that is none ends the connection.
+    pub bad_header_closes: bool,
+    /// Legal variant: whether several requests of one packet are done from the last to the first.
+    pub last_request_first: bool,
+    /// The register that is not as its map says.
+    pub register_fault: Option<RegisterFault>,
+    /// What else it does wrong.
+    pub departure: Option<Departure>,
+    /// How the TCP side departs from its specification.
+    pub tcp_fault: Option<TcpFault>,
 }
 
 impl Behaviour {
@@ -241,7 +253,23 @@ impl Behaviour {
         categories_ignored: false,
         unknown_object_answered: false,
         more_follows_missing: false,
+        bad_header_closes: false,
+        last_request_first: false,
+        register_fault: None,
+        departure: None,
+        tcp_fault: None,
     };
+
+    /// Whether a register is not as its map says, in this way.
+    pub(super) fn spoils(&self, kind: RegisterFaultKind, address: u16) -> bool {
+        self.register_fault
+            .is_some_and(|fault| fault.is(kind, address))
+    }
+
+    /// Whether it departs so.
+    pub(crate) fn departs(&self, departure: Departure) -> bool {
+        self.departure == Some(departure)
+    }
 }
 
 impl Default for Behaviour {

@@ -62,6 +62,23 @@ impl Framer {
         }
     }
 
+    /// One that takes a frame to have ended before a character could follow.
+    pub fn impatient(line: SerialSettings) -> Framer {
+        Framer {
+            end_silence: line.character_time() * 9 / 10,
+            ..Framer::new(line)
+        }
+    }
+
+    /// One that waits for more for 20 ms, and minds no silence before that.
+    pub fn patient(line: SerialSettings) -> Framer {
+        Framer {
+            end_silence: Duration::from_millis(20).max(line.silence_3_5()),
+            remains: Some(Remains::OfTornFrames),
+            ..Framer::new(line)
+        }
+    }
+
     /// One that keeps something of frames that are none.
     pub fn keeping(self, remains: Remains) -> Framer {
         Framer {

@@ -7,12 +7,15 @@ mod identification;
 mod registers;
 
 use super::counters::Counters;
-use super::{Behaviour, Exception, Registers};
+use super::{Behaviour, Departure, Exception, Registers};
 
 /// Functions that exist on serial lines only.
 const SERIAL_LINE_ONLY: [u8; 5] = [0x07, 0x08, 0x0B, 0x0C, 0x11];
 /// What only fetches the event counter is not counted as an event.
 const FETCHES: [u8; 2] = [0x0B, 0x0C];
+
+/// Whatever keeps a device from doing anything keeps it from one of these.
+const ANY_CONDITION: [u8; 2] = [0x06, 0x14];
 
 /// What came of a request.
 pub(super) enum Outcome {
@@ -29,6 +32,8 @@ pub(super) struct Service<'a, R> {
     pub(super) counters: &'a mut Counters,
     /// Whether it is at the end of a Modbus TCP connection.
     pub(super) over_tcp: bool,
+    /// What the register of a [`super::RegisterFault`] held before anybody wrote it.
+    pub(super) first_value: Option<u16>,
 }
 
 impl<R: Registers> Service<'_, R> {
@@ -37,10 +42,19 @@ impl<R: Registers> Service<'_, R> {
         if self.counters.listens_only {
             return self.listen(function, data);
         }
+        let filled = [data, &[0; 4]].concat();
+        let is_short = data.len() < 4 && (0x01..=0x06).contains(&function);
+        let data = match is_short && self.behaviour.departs(Departure::ShortPduFilled) {
+            true => &filled[..4],
+            false => data,
+        };
         let outcome = self.execute(function, data);
         if !self.counters.listens_only {
             let counts = !FETCHES.contains(&function) || self.behaviour.fetches_count_as_events;
             self.counters.done(outcome.as_ref().err().copied(), counts);
+            if outcome.is_err() && self.behaviour.departs(Departure::RefusalsCountAsEvents) {
+                self.counters.events = self.counters.events.wrapping_add(1);
+            }
         }
         let is_listening = self.counters.listens_only && outcome.is_ok();
         match is_listening && !self.behaviour.listen_only_answered {
@@ -68,7 +82,15 @@ impl<R: Registers> Service<'_, R> {
         if serial_only || !self.registers.functions().contains(&function) {
             return Err(Exception::IllegalFunction);
         }
-        if let Some(exception) = self.registers.unable(function) {
+        let for_all = self.behaviour.departs(Departure::ConditionsForAll);
+        let unable = self.registers.unable(function);
+        let unable = unable.or_else(|| {
+            let others = ANY_CONDITION.iter().filter(|_| for_all);
+            others.filter_map(|it| self.registers.unable(*it)).next()
+        });
+        if let Some(exception) = unable
+            && !self.behaviour.departs(Departure::ConditionsIgnored)
+        {
             return Err(exception);
         }
         match function {
@@ -111,7 +133,36 @@ impl<R: Registers> Service<'_, R> {
         if too_far {
             return Err(Exception::IllegalDataAddress);
         }
+        self.departing_extent(start, quantity, most)?;
+        let start = match self.behaviour.departs(Departure::AddressesFromOne) {
+            true => start.saturating_add(1),
+            false => start,
+        };
         Ok(Extent { start, quantity })
+    }
+}
+
+/// A small buffer has room for so many registers, or for eight times as many bits.
+const SMALL_BUFFER: u16 = 64;
+/// More than the most registers of any request.
+const MOST_REGISTERS: u16 = 125;
+
+impl<R: Registers> Service<'_, R> {
+    /// What a departing slave refuses beside.
+    fn departing_extent(&self, start: u16, quantity: u16, most: u16) -> Result<(), Exception> {
+        let room = match most > MOST_REGISTERS {
+            true => 8 * SMALL_BUFFER,
+            false => SMALL_BUFFER,
+        };
+        let is_large = quantity > room;
+        if is_large && self.behaviour.departs(Departure::LargeRequestsRefused) {
+            return Err(Exception::IllegalDataValue);
+        }
+        let reaches_last = u32::from(start) + u32::from(quantity) == 0x1_0000;
+        if reaches_last && self.behaviour.departs(Departure::LastAddressRefused) {
+            return Err(Exception::IllegalDataAddress);
+        }
+        Ok(())
     }
 }
 

@@ -2,16 +2,21 @@
 
 use std::time::Duration;
 
-use fieldproof_link::{Character, Framing, Instant, Line, SerialSettings, State};
+use fieldproof_link::{
+    Character, Framing, Instant, Line, Reception, SerialSettings, State, Transmission,
+};
 
 use super::counters::Counters;
 use super::crc;
-use super::framing::{Framer, Received};
+use super::framing::{Framer, LONGEST_FRAME, Received};
 use super::functions::{Outcome, Service};
 use super::stream::{Request, StreamFramer};
-use super::{Behaviour, Command, Exception, Registers};
+use super::tcp_side::{self, TcpSide};
+use super::{Behaviour, Command, Departure, Exception, RegisterFault, Registers};
 
 const BROADCAST: u8 = 0;
+/// [`Departure::RestsAfterAnswer`]
+const REST: Duration = Duration::from_millis(10);
 
 /// A slave on one serial port. The device that owns the port passes on what arrives, wakes it when it asks, and sends
 /// what it gives.
@@ -24,25 +29,39 @@ pub struct ModbusSlave<R> {
     framer: Framer,
     /// In place of the line and its framer, if it is at the end of a connection.
     stream: Option<StreamFramer>,
+    /// Beside the line.
+    tcp: TcpSide,
     chance: fastrand::Rng,
     reply: Option<(Instant, Vec<u8>)>,
     sending_until: Option<Instant>,
+    /// What the register of a [`super::RegisterFault`] held before anybody wrote it.
+    first_value: Option<u16>,
+    /// It does not hear the next frame.
+    is_deaf: bool,
+    /// It hears nothing whole until then.
+    rests_until: Option<Instant>,
 }
 
 impl<R: Registers> ModbusSlave<R> {
     /// A slave that behaves so; `seed` fixes its jitter.
     pub fn new(registers: R, behaviour: Behaviour, seed: u64) -> ModbusSlave<R> {
         let line = registers.serial();
+        let spoilt = behaviour.register_fault.map(RegisterFault::address);
+        let first_value = spoilt.and_then(|it| registers.read(it, &behaviour).ok());
         ModbusSlave {
+            first_value,
             framer: framer(line, &behaviour),
             registers,
             behaviour,
             counters: Counters::default(),
             line,
             stream: None,
+            tcp: TcpSide::default(),
             chance: fastrand::Rng::with_seed(seed),
             reply: None,
             sending_until: None,
+            is_deaf: false,
+            rests_until: None,
         }
     }
 
@@ -62,6 +81,11 @@ impl<R: Registers> ModbusSlave<R> {
     /// Its registers, to be changed from the device's other side.
     pub fn registers_mut(&mut self) -> &mut R {
         &mut self.registers
+    }
+
+    /// Whether it departs so.
+    pub(crate) fn departs(&self, departure: Departure) -> bool {
+        self.behaviour.departs(departure)
     }
 
     /// How its line is set now: a new bit rate is in effect once the answer that acknowledged it has left.
@@ -85,6 +109,7 @@ impl<R: Registers> ModbusSlave<R> {
     pub fn restart(&mut self) {
         self.reply = None;
         self.sending_until = None;
+        self.tcp.restart();
         self.counters = Counters::default();
         self.line = self.registers.serial();
         self.framer = framer(self.line, &self.behaviour);
@@ -98,11 +123,39 @@ impl<R: Registers> ModbusSlave<R> {
             stream.receive(now, character);
             return;
         }
+        let rests = self.rests_until.is_some_and(|until| now < until);
         let heard = Character {
-            spoilt: character.spoilt && !self.behaviour.parity_ignored || self.is_busy(now),
+            spoilt: character.spoilt && !self.behaviour.parity_ignored
+                || self.is_busy(now)
+                || rests,
             ..character
         };
         self.framer.receive(now, heard);
+    }
+
+    /// Something came over the connection of Modbus TCP at `port`.
+    pub fn receive_over_tcp(&mut self, now: Instant, port: usize, what: Reception) {
+        self.tcp.receive(now, port, what, &self.behaviour);
+    }
+
+    /// When it wants to be woken by [`ModbusSlave::wake_tcp`].
+    pub fn wake_tcp_at(&self) -> Option<Instant> {
+        self.tcp.wake_at(&self.behaviour)
+    }
+
+    /// What it sends over a connection of Modbus TCP, if anything.
+    pub fn wake_tcp(&mut self, now: Instant) -> Option<(usize, Transmission)> {
+        if let Some(port) = self.tcp.take_ended() {
+            return Some((port, Transmission::Close));
+        }
+        if let Some(request) = self.tcp.next_request(&self.behaviour)
+            && let Some(body) = self.answer_body(tcp_side::body(&request.1), true)
+        {
+            let at = now + self.delay();
+            self.tcp.answer(at, request, body, &self.behaviour);
+        }
+        let (port, frame) = self.tcp.due(now)?;
+        Some((port, Transmission::bytes(&frame)))
     }
 
     /// When it wants to be woken.
@@ -135,7 +188,11 @@ impl<R: Registers> ModbusSlave<R> {
         }
         let (_, frame) = self.reply.take_if(|(at, _)| *at <= now)?;
         let length = u32::try_from(frame.len()).unwrap_or(u32::MAX);
-        self.sending_until = Some(now + self.line.character_time() * length);
+        let until = now + self.line.character_time() * length;
+        self.sending_until = Some(until);
+        if self.behaviour.departs(Departure::RestsAfterAnswer) {
+            self.rests_until = Some(until + REST);
+        }
         Some(frame.into_iter().map(Character::new).collect())
     }
 
@@ -174,6 +231,11 @@ impl<R: Registers> ModbusSlave<R> {
 
     /// Does what a frame asks; the whole answer, if there is one.
     fn answer(&mut self, received: &Received) -> Option<Vec<u8>> {
+        let was_deaf = self.is_deaf;
+        self.is_deaf = !was_deaf && self.deafens(received);
+        if was_deaf {
+            return None;
+        }
         let whole = crc::split(&received.bytes).filter(|(request, _)| !request.is_empty());
         let intact = whole.is_some_and(|(request, intact)| {
             intact || self.behaviour.crc_half_checked && crc::half_right(request, &received.bytes)
@@ -189,8 +251,25 @@ impl<R: Registers> ModbusSlave<R> {
             self.counters.heard();
         }
         let (request, _) = whole?;
-        let body = self.answer_body(request)?;
-        Some(crc::with_crc(body, self.behaviour.crc_order))
+        let body = self.answer_body(request, self.is_over_tcp())?;
+        let answer = crc::with_crc(body, self.behaviour.crc_order);
+        match self.behaviour.departs(Departure::EchoesRequest) {
+            true => Some([received.bytes.as_slice(), &answer].concat()),
+            false => Some(answer),
+        }
+    }
+
+    /// Whether it does not hear the frame after this one.
+    fn deafens(&self, received: &Received) -> bool {
+        match self.behaviour.departure {
+            Some(Departure::DeafAfterLongFrame) => {
+                received.flawed && received.bytes.len() == LONGEST_FRAME
+            }
+            Some(Departure::DeafAfterBadFrame) => {
+                received.flawed || !crc::split(&received.bytes).is_some_and(|(_, intact)| intact)
+            }
+            _ => false,
+        }
     }
 
     /// The same on a connection.
@@ -198,31 +277,33 @@ impl<R: Registers> ModbusSlave<R> {
         if !(request.intact || self.behaviour.stale_crc_accepted) {
             return None;
         }
-        let body = self.answer_body(&request.body)?;
+        let body = self.answer_body(&request.body, self.is_over_tcp())?;
         Some(request.answered(body, self.behaviour.crc_order))
     }
 
     /// Address, function and data of the answer.
-    fn answer_body(&mut self, request: &[u8]) -> Option<Vec<u8>> {
+    fn answer_body(&mut self, request: &[u8], over_tcp: bool) -> Option<Vec<u8>> {
         match self.registers.command(request, &self.behaviour) {
             Some(Command::Silent) => None,
             Some(Command::Answer(body)) => Some(body),
-            None => self.ordinary_answer(request),
+            None => self.ordinary_answer(request, over_tcp),
         }
     }
 
     /// The answer to a request on the own address or to all, without its CRC.
-    fn ordinary_answer(&mut self, request: &[u8]) -> Option<Vec<u8>> {
+    fn ordinary_answer(&mut self, request: &[u8], over_tcp: bool) -> Option<Vec<u8>> {
         let (&address, pdu) = request.split_first()?;
         let own_address = self.registers.address();
         // There is no broadcast on a connection of its own, and no other slave behind it.
-        let over_tcp = self.is_over_tcp();
         let broadcast = address == BROADCAST && !over_tcp;
         let others = self.behaviour.other_addresses_answered || over_tcp;
         if !broadcast && address != own_address && !others {
             return None;
         }
         let (function, data) = match pdu.split_first() {
+            Some((&function, data)) if self.behaviour.departs(Departure::HighBitIgnored) => {
+                (function & 0x7F, data)
+            }
             Some((&function, data)) => (function, data),
             None if self.behaviour.bare_address_answered => (0, pdu),
             None => return None,
@@ -232,7 +313,7 @@ impl<R: Registers> ModbusSlave<R> {
             return None;
         }
         let unit = if over_tcp { address } else { own_address };
-        let outcome = match self.service().serve(function, data) {
+        let outcome = match self.service(over_tcp).serve(function, data) {
             Outcome::Answer(outcome) => outcome,
             Outcome::Silence => return None,
         };
@@ -267,9 +348,10 @@ impl<R: Registers> ModbusSlave<R> {
         answer
     }
 
-    fn service(&mut self) -> Service<'_, R> {
+    fn service(&mut self, over_tcp: bool) -> Service<'_, R> {
         Service {
-            over_tcp: self.is_over_tcp(),
+            over_tcp,
+            first_value: self.first_value,
             registers: &mut self.registers,
             behaviour: &self.behaviour,
             counters: &mut self.counters,
@@ -283,9 +365,11 @@ impl<R: Registers> ModbusSlave<R> {
 }
 
 fn framer(line: SerialSettings, behaviour: &Behaviour) -> Framer {
-    let framer = match behaviour.replies_before_silence {
-        true => Framer::hasty(line),
-        false => Framer::new(line),
+    let framer = match behaviour.departure {
+        _ if behaviour.replies_before_silence => Framer::hasty(line),
+        Some(Departure::IdleLineEndsFrame) => Framer::impatient(line),
+        Some(Departure::PatientLine) => Framer::patient(line),
+        _ => Framer::new(line),
     };
     match behaviour.frame_remains {
         Some(remains) => framer.keeping(remains),

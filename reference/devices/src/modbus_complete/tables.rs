@@ -98,6 +98,11 @@ impl CompleteRegisters {
         self.holding.retain(|register, _| *register == KEPT);
     }
 
+    /// What should survive power-off is lost, too.
+    pub(super) fn forget(&mut self) {
+        self.holding.clear();
+    }
+
     /// Sets an input: `input register 0005`, `discrete input 0003`, the number in hexadecimal.
     ///
     /// # Errors

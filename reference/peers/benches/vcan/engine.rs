@@ -82,6 +82,7 @@ fn play(interface: &str, read: &Read, times: u32) -> f64 {
         fixed_rates: Default::default(),
         ports: ["can".to_owned()].into(),
         modbus_tcp: [].into(),
+        streams: [].into(),
         stimuli: [].into(),
         permits: [].into(),
         node: Some(1),

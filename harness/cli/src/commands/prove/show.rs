@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use fieldproof_record::Verdict;
 
-use super::{Finding, Guise, Proof};
+use super::judge::{Figures, Finding, Proof, Wrong};
+use super::rounds::Guise;
 use crate::screen::INK;
 
-/// So many cases are named on a line, and the others counted.
+/// So many cases or faults are named on a line, and the others counted.
 const NAMED: usize = 3;
 
 pub(super) fn text(proof: &Proof) -> String {
@@ -21,32 +22,35 @@ pub(super) fn text(proof: &Proof) -> String {
         }
         round(&mut text, finding);
     }
-    let faults = proof
-        .rounds
-        .iter()
-        .filter(|it| matches!(it.guise, Guise::Fault(_)))
-        .count();
-    let caught = faults - proof.uncaught.len();
-    say(
-        &mut text,
-        format_args!("\n{caught} of {faults} faults are caught\n"),
-    );
-    if !proof.uncaught.is_empty() {
-        text.push_str("\nfaults that nothing catches:\n");
-        for (device, fault) in &proof.uncaught {
-            say(&mut text, format_args!("  {device}  {fault}\n"));
+    if proof.whole {
+        text.push_str("\ncases, and the faults that they catch\n");
+        for (case, faults) in &proof.cases {
+            let faults: Vec<String> = faults
+                .iter()
+                .map(|(device, fault)| format!("{fault} ({device})"))
+                .collect();
+            let caught = match faults.is_empty() {
+                true => paint(Verdict::Fail, "catches nothing"),
+                false => format!("{}: {}", faults.len(), named(&faults)),
+            };
+            say(&mut text, format_args!("  {case}  {caught}\n"));
         }
     }
-    if !proof.idle_cases.is_empty() {
+    wrong_rounds(&mut text, proof);
+    if proof.whole && !proof.idle_cases.is_empty() {
         let count = proof.idle_cases.len();
         say(
             &mut text,
-            format_args!("\ncases that catch no fault ({count}, for information):\n"),
+            format_args!("\ncases that catch no fault ({count}):\n"),
         );
         for case in &proof.idle_cases {
             say(&mut text, format_args!("  {case}\n"));
         }
     }
+    say(
+        &mut text,
+        format_args!("\n{}\n", figures(&proof.figures, proof.whole)),
+    );
     let last = match proof.holds {
         true => paint(
             Verdict::Pass,
@@ -58,31 +62,90 @@ pub(super) fn text(proof: &Proof) -> String {
     text
 }
 
+fn figures(figures: &Figures, whole: bool) -> String {
+    let Figures {
+        faults,
+        caught,
+        caught_where_they_belong,
+        named,
+        cases,
+        cases_that_catch,
+    } = figures;
+    let mut text = format!("{caught} of {faults} faults are caught");
+    if whole {
+        text.push_str(&format!(
+            "; {cases_that_catch} of {cases} cases have caught one"
+        ));
+    }
+    text.push_str(&format!(
+        "\n{caught_where_they_belong} by the suites they belong to, {named} of these named in the first line of a failure"
+    ));
+    text
+}
+
+fn wrong_rounds(text: &mut String, proof: &Proof) {
+    let wrong = || proof.rounds.iter().filter(|it| it.wrong.is_some());
+    if wrong().next().is_none() {
+        return;
+    }
+    text.push_str("\nnot as it must be:\n");
+    for finding in wrong() {
+        let what = match &finding.wrong {
+            None => continue,
+            Some(Wrong::CaughtByNothing) => "nothing catches it".to_owned(),
+            Some(Wrong::CaughtElsewhere(service)) => {
+                let cases: Vec<String> = finding.failed.keys().cloned().collect();
+                format!("no case about {service} catches it, only {}", named(&cases))
+            }
+            Some(Wrong::NotPassed) => "a right device does not pass".to_owned(),
+            Some(Wrong::PassedInVain) => {
+                format!(
+                    "these cases pass without anything to rest on: {}",
+                    named(&finding.passed_in_vain)
+                )
+            }
+            Some(Wrong::NotSeen) => "nothing shows it".to_owned(),
+        };
+        say(
+            text,
+            format_args!("  {}  {}: {what}\n", finding.device, title(&finding.guise)),
+        );
+    }
+}
+
+fn title(guise: &Guise) -> String {
+    match guise {
+        Guise::AsItIs => "as it is".to_owned(),
+        Guise::Variant(name) => format!("variant {name}"),
+        Guise::Fault(name) => format!("fault {name}"),
+        Guise::Line(name) => format!("line {name}"),
+    }
+}
+
 fn round(text: &mut String, finding: &Finding) {
-    let (name, is_fault) = match &finding.guise {
-        Guise::AsItIs => ("as it is".to_owned(), false),
-        Guise::Variant(name) => (format!("variant {name}"), false),
-        Guise::Fault(name) => (format!("fault {name}"), true),
-    };
+    let failed: Vec<String> = finding.failed.keys().cloned().collect();
     let mut parts = Vec::new();
-    if is_fault {
-        match finding.failed.is_empty() {
-            true => parts.push(paint(Verdict::Fail, "caught by nothing")),
-            false => parts.push(paint(
-                Verdict::Pass,
-                format!("caught by {}", named(&finding.failed)),
-            )),
+    let right = |is: bool| match is {
+        true => Verdict::Pass,
+        false => Verdict::Fail,
+    };
+    let is_right = finding.wrong.is_none();
+    match &finding.guise {
+        Guise::Fault(_) if failed.is_empty() => {
+            parts.push(paint(Verdict::Fail, "caught by nothing"));
         }
-    } else if finding.passes() {
-        parts.push(paint(
-            Verdict::Pass,
-            format!("{} cases, nothing wrong", finding.cases),
-        ));
-    } else if !finding.failed.is_empty() {
-        parts.push(paint(
-            Verdict::Fail,
-            format!("fail: {}", named(&finding.failed)),
-        ));
+        Guise::Fault(_) => parts.push(paint(
+            right(is_right),
+            format!("caught by {}", named(&failed)),
+        )),
+        _ if finding.passes() => {
+            let words = format!("{} cases, nothing wrong", finding.cases);
+            parts.push(paint(right(is_right), words));
+        }
+        _ if !failed.is_empty() => {
+            parts.push(paint(right(is_right), format!("fail: {}", named(&failed))));
+        }
+        _ => {}
     }
     for (verdict, cases) in [
         (Verdict::Inconclusive, &finding.inconclusive),
@@ -98,6 +161,7 @@ fn round(text: &mut String, finding: &Finding) {
     }
     let mut parts = parts.into_iter();
     let first = parts.next().unwrap_or_default();
+    let name = title(&finding.guise);
     say(text, format_args!("  {name:<36}  {first}\n"));
     for part in parts {
         say(text, format_args!("  {:<36}  {part}\n", ""));

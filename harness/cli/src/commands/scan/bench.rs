@@ -101,7 +101,7 @@ fn entry(
     path: Option<&Path>,
 ) -> Option<String> {
     let name = device.device.as_deref()?;
-    let role = role(known.named(name)?, found.on_can)?;
+    let role = role(known.named(name)?, found.on_can, &found.link)?;
     let (key, number) = match (device.node, device.address) {
         (Some(node), _) => ("node", node),
         (None, Some(address @ 1..=247)) => ("address", address),

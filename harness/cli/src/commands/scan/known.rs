@@ -115,8 +115,17 @@ fn claims(description: &DeviceDescription, answers: &Answers) -> bool {
 }
 
 /// The role of the port through which a device was found.
-pub(super) fn role(description: &DeviceDescription, can: bool) -> Option<&str> {
-    let preferred = if can { "can" } else { "serial" };
+pub(super) fn role<'d>(
+    description: &'d DeviceDescription,
+    can: bool,
+    link: &str,
+) -> Option<&'d str> {
+    let is_modbus_tcp = link.starts_with("tcp:") && !link.contains("framing=rtu");
+    let preferred = match (can, is_modbus_tcp) {
+        (true, _) => "can",
+        (false, true) if description.ports.contains_key("tcp") => "tcp",
+        (false, _) => "serial",
+    };
     let is_such = |port: &PortDescription| matches!(port, PortDescription::Can { .. }) == can;
     let mut roles = description.ports.iter().filter(|(_, port)| is_such(port));
     match description.ports.get(preferred) {

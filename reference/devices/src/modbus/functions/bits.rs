@@ -1,7 +1,7 @@
 //! 01h, 02h, 05h, 0Fh: coils and discrete inputs.
 
 use super::{Service, counted, two_words};
-use crate::modbus::{Exception, Registers};
+use crate::modbus::{Departure, Exception, Registers};
 
 /// Most bits of one 01h or 02h.
 const MOST_READ: u16 = 2_000;
@@ -62,7 +62,9 @@ impl<R: Registers> Service<'_, R> {
             return Err(Exception::IllegalDataValue);
         }
         self.registers.read_coil(coil)?;
-        self.registers.write_coil(coil, value != OFF);
+        if !self.behaviour.departs(Departure::CoilNotWritten) {
+            self.registers.write_coil(coil, value != OFF);
+        }
         Ok(data.to_vec())
     }
 
@@ -91,6 +93,6 @@ impl<R: Registers> Service<'_, R> {
         for (coil, on) in written.take(self.behaviour.most_written) {
             self.registers.write_coil(coil, on);
         }
-        Ok(data[..4].to_vec())
+        Ok(self.written(&data[..4], byte_count))
     }
 }

@@ -1,7 +1,7 @@
 //! 07h, 08h, 0Bh, 0Ch, 11h: what a slave tells of itself and of the line.
 
 use super::{Service, counted};
-use crate::modbus::{Exception, Registers};
+use crate::modbus::{Departure, Exception, Registers};
 
 const RETURN_QUERY_DATA: u16 = 0x00;
 const RESTART: u16 = 0x01;
@@ -29,7 +29,11 @@ impl<R: Registers> Service<'_, R> {
     /// Nothing; answered by eight bits.
     pub(super) fn exception_status(&self, data: &[u8]) -> Result<Vec<u8>, Exception> {
         nothing(data)?;
-        Ok(vec![self.registers.exception_status()])
+        let status = self.registers.exception_status();
+        match self.behaviour.departs(Departure::ExceptionStatusLong) {
+            true => Ok(vec![0, status]),
+            false => Ok(vec![status]),
+        }
     }
 
     /// Sub-function and data; answered by the same, or by the sub-function and a counter.
@@ -63,14 +67,25 @@ impl<R: Registers> Service<'_, R> {
             SERVER_MESSAGES => self.counters.server_messages,
             UNANSWERED => self.counters.unanswered,
             BUSY => self.counters.busy,
+            _ if self.behaviour.departs(Departure::UnknownSubFunctionEchoed) => {
+                return Ok(data.to_vec());
+            }
             _ => return Err(Exception::IllegalFunction),
         };
         zero(argument)?;
+        let [_, low] = sub_function;
+        let counter = match self.behaviour.departs(Departure::CounterStays(low)) {
+            true => 0,
+            false => counter,
+        };
         Ok([sub_function, counter.to_be_bytes()].concat())
     }
 
     fn return_query_data(&self, data: &[u8]) -> Result<Vec<u8>, Exception> {
         if data.len() < 4 {
+            return Err(Exception::IllegalDataValue);
+        }
+        if data.len() > 4 && self.behaviour.departs(Departure::LongLoopbackRefused) {
             return Err(Exception::IllegalDataValue);
         }
         let length = match self.behaviour.loopback_cut {
@@ -106,7 +121,9 @@ impl<R: Registers> Service<'_, R> {
             counters.bus_messages.to_be_bytes(),
         ];
         let mut bytes = heads.concat();
-        bytes.extend(counters.log());
+        if !self.behaviour.departs(Departure::LogEmpty) {
+            bytes.extend(counters.log());
+        }
         Ok(counted(bytes))
     }
 

@@ -1,7 +1,7 @@
 //! 14h, 15h, 18h: files of records, and queues.
 
 use super::{Service, counted};
-use crate::modbus::{Exception, Registers};
+use crate::modbus::{Departure, Exception, Registers};
 
 const REFERENCE_TYPE: u8 = 6;
 const LAST_RECORD: u16 = 0x270F;
@@ -62,6 +62,9 @@ impl<R: Registers> Service<'_, R> {
                 row.extend(word.to_be_bytes());
             }
             answer.extend(counted(row));
+            if self.behaviour.departs(Departure::FirstRowOnly) {
+                break;
+            }
             if answer.len() > LONGEST_READ {
                 return Err(Exception::IllegalDataValue);
             }
@@ -94,7 +97,11 @@ impl<R: Registers> Service<'_, R> {
         if !rest.is_empty() {
             return Err(Exception::IllegalDataValue);
         }
-        for (file, record, value) in writes.into_iter().take(self.behaviour.most_written) {
+        let most = match self.behaviour.departs(Departure::RecordsNotWritten) {
+            true => 0,
+            false => self.behaviour.most_written,
+        };
+        for (file, record, value) in writes.into_iter().take(most) {
             self.registers.write_record(file, record, value);
         }
         Ok(data.to_vec())

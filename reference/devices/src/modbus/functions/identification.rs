@@ -1,7 +1,7 @@
 //! 2Bh with MEI type 0Eh: the device identification.
 
 use super::Service;
-use crate::modbus::{Exception, Registers};
+use crate::modbus::{Departure, Exception, Registers};
 
 const READ_DEVICE_IDENTIFICATION: u8 = 0x0E;
 /// Objects up to here are of the category.
@@ -74,7 +74,10 @@ impl<R: Registers> Service<'_, R> {
             code,
             CONFORMITY,
             next.map_or(0, |_| MORE_FOLLOWS),
-            next.unwrap_or(0),
+            match self.behaviour.departs(Departure::NextObjectWrong) {
+                true => next.map_or(0, |next| next.wrapping_add(1)),
+                false => next.unwrap_or(0),
+            },
             number,
         ];
         for (id, text) in objects {

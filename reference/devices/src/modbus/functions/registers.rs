@@ -1,7 +1,7 @@
 //! 03h, 04h, 06h, 10h, 16h, 17h: registers.
 
 use super::{Extent, Service, counted, two_words};
-use crate::modbus::{ByteCount, EchoedValue, Exception, Registers};
+use crate::modbus::{ByteCount, Departure, EchoedValue, Exception, RegisterFaultKind, Registers};
 
 /// Most registers of one 03h, 04h or 17h.
 const MOST_READ: u16 = 125;
@@ -48,7 +48,21 @@ impl<R: Registers> Service<'_, R> {
     }
 
     fn holding(&self, register: u16) -> Result<u16, Exception> {
-        self.or_hole(self.registers.read(register, self.behaviour))
+        if self.behaviour.spoils(RegisterFaultKind::Missing, register) {
+            return Err(Exception::IllegalDataAddress);
+        }
+        if self.behaviour.spoils(RegisterFaultKind::Surplus, register) {
+            return Ok(0);
+        }
+        let held = self.or_hole(self.registers.read(register, self.behaviour))?;
+        let is_default = self.first_value == Some(held)
+            && self
+                .behaviour
+                .spoils(RegisterFaultKind::WrongDefault, register);
+        Ok(match is_default {
+            true => held ^ 1,
+            false => held,
+        })
     }
 
     fn or_hole(&self, read: Result<u16, Exception>) -> Result<u16, Exception> {
@@ -60,7 +74,12 @@ impl<R: Registers> Service<'_, R> {
 
     /// Whether a register takes a value; `false` if that is only pretended.
     fn check_write(&self, register: u16, value: u16) -> Result<bool, Exception> {
+        let spoils = |kind| self.behaviour.spoils(kind, register);
         match self.registers.check_write(register, value) {
+            Ok(()) if spoils(RegisterFaultKind::ReadOnly) => Err(Exception::IllegalDataAddress),
+            Ok(()) if spoils(RegisterFaultKind::NotWritten) => Ok(false),
+            Err(Exception::IllegalDataValue) if spoils(RegisterFaultKind::Unlimited) => Ok(true),
+            Err(_) if spoils(RegisterFaultKind::Writable) => Ok(false),
             Err(Exception::IllegalDataValue) if self.behaviour.limits_ignored => Ok(true),
             Err(Exception::IllegalDataAddress)
                 if self.behaviour.read_only_confirmed
@@ -75,7 +94,9 @@ impl<R: Registers> Service<'_, R> {
     /// Register and value; answered by the same.
     pub(super) fn write_single(&mut self, data: &[u8]) -> Result<Vec<u8>, Exception> {
         let [register, value] = two_words(data)?;
-        if self.check_write(register, value)? {
+        if self.check_write(register, value)?
+            && !self.behaviour.departs(Departure::SingleNotWritten)
+        {
             self.registers.write(register, value);
         }
         let echoed = match self.behaviour.echoed_value {
@@ -89,7 +110,18 @@ impl<R: Registers> Service<'_, R> {
     pub(super) fn write_multiple(&mut self, data: &[u8]) -> Result<Vec<u8>, Exception> {
         let write = self.read_write_request(data, MOST_WRITTEN)?;
         self.write_all(&write)?;
-        Ok(data[..4].to_vec())
+        Ok(self.written(&data[..4], data[4]))
+    }
+
+    /// Start and quantity of what was written.
+    pub(super) fn written(&self, start_and_quantity: &[u8], byte_count: u8) -> Vec<u8> {
+        let mut answer = start_and_quantity.to_vec();
+        if self.behaviour.departs(Departure::MultipleEchoesBytes)
+            && let Some(quantity) = answer.last_mut()
+        {
+            *quantity = byte_count;
+        }
+        answer
     }
 
     /// Start, quantity, byte count, values.
@@ -146,7 +178,8 @@ impl<R: Registers> Service<'_, R> {
             true => present & and_mask | or_mask,
             false => present & and_mask | or_mask & !and_mask,
         };
-        if self.check_write(register, value)? {
+        let is_lost = self.behaviour.departs(Departure::MaskLost) && and_mask != 0;
+        if self.check_write(register, value)? && !is_lost {
             self.registers.write(register, value);
         }
         Ok(data.to_vec())
@@ -161,7 +194,10 @@ impl<R: Registers> Service<'_, R> {
         let values = self.read_write_request(write, MOST_WRITTEN_WITH_READ)?;
         let extent = self.extent(start, quantity, MOST_READ)?;
         let before = self.words(extent, Self::holding)?;
-        self.write_all(&values)?;
+        match self.write_all(&values) {
+            Err(_) if self.behaviour.departs(Departure::ReadsThoughRefused) => {}
+            written => written?,
+        }
         Ok(counted(match self.behaviour.reads_before_writes {
             true => before,
             false => self.words(extent, Self::holding)?,
