@@ -113,7 +113,9 @@ pub(super) fn facts(run: &RunStarted, lane: &Lane) -> String {
         .as_deref()
         .unwrap_or("reference device, simulated");
     row("bench", escape(bench).into_owned());
-    row("lane time", time(lane.summary.lane_time_ns));
+    if lane.summary.complete {
+        row("lane time", time(lane.summary.lane_time_ns));
+    }
     let mut text = "<table class=\"facts\"><tbody>".to_owned();
     for (name, value) in rows {
         let _ = write!(
