@@ -84,7 +84,7 @@ mod tests {
             let milliseconds = now.as_nanos() / 1_000_000;
             sent.extend(out.drain().map(|(_, what)| match what {
                 Transmission::Frame(frame) => format!("{milliseconds} {frame}"),
-                Transmission::Characters(_) | Transmission::Close => unreachable!(),
+                Transmission::Characters(_) => unreachable!(),
             }));
         }
         let others: Vec<&String> = sent.iter().filter(|it| !it.contains("1DC#")).collect();
