@@ -6,7 +6,7 @@ use fieldproof_link::{Framing, Participant, SerialSettings};
 
 use crate::liaomiao_encoder::Behaviour as EncoderBehaviour;
 use crate::teco_jn5_cm_can::Behaviour as GatewayBehaviour;
-use crate::{canopen, drive, modbus};
+use crate::{canopen, drive, modbus, named};
 
 /// A kind of reference device.
 #[derive(Debug, Clone, Copy)]
@@ -77,12 +77,18 @@ pub struct Fault {
     pub breaks: &'static str,
     /// What one sees, in the words of a bug report.
     pub words: &'static str,
-    /// What the first line of a failure names, one of these: the object, state or field that is wrong.
-    pub named: &'static [&'static str],
     /// The suite or service that must catch it: `sdo`, `nmt`, `boot-up`, `error-control`, `pdo`, `lss`, `modbus`,
     /// `sync`, `time`, `store`, `emergency`, `cob-id`, `robustness`, `gateway`, `cia402`, `cia406`.
     pub caught_by: &'static str,
     pub(crate) apply: fn(&mut Behaviour),
+}
+
+impl Fault {
+    /// What the first line of a failure names, one of these: the object, state or field that is wrong. Empty where nobody
+    /// has said it yet.
+    pub fn named(&self) -> &'static [&'static str] {
+        named::of(self.name)
+    }
 }
 
 /// Something else that a right device may do.

@@ -15,6 +15,7 @@ mod kinco_servo;
 mod liaomiao_encoder;
 pub mod modbus;
 mod modbus_complete;
+mod named;
 pub mod neighbour;
 #[cfg(test)]
 mod script;

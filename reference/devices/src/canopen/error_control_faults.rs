@@ -7,7 +7,6 @@ pub(crate) const HEARTBEAT_PERIOD_DOUBLED: Fault = Fault {
     breaks: "CiA 301: object 1017h counts milliseconds",
     words: "sends its heartbeat half as often as 1017h says",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.heartbeat_percent = 200,
 };
 
@@ -16,7 +15,6 @@ pub(crate) const HEARTBEAT_CHANGE_IGNORED: Fault = Fault {
     breaks: "CiA 301: object 1017h",
     words: "keeps the period of a heartbeat that runs when another is written to 1017h",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.heartbeat_change_taken = false,
 };
 
@@ -25,7 +23,6 @@ pub(crate) const STORED_HEARTBEAT_NOT_STARTED: Fault = Fault {
     breaks: "CiA 301: heartbeat protocol, starts with the boot-up message",
     words: "begins its heartbeat when 1017h is written, not when a reset gives it a value",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.stored_heartbeat_starts = false,
 };
 
@@ -34,7 +31,6 @@ pub(crate) const HEARTBEAT_OF_EIGHT_BYTES: Fault = Fault {
     breaks: "CiA 301: heartbeat protocol, one byte",
     words: "sends eight bytes in a heartbeat",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.heartbeat_length = 8,
 };
 
@@ -43,7 +39,6 @@ pub(crate) const HEARTBEAT_TOGGLES: Fault = Fault {
     breaks: "CiA 301: heartbeat protocol, bit 7 is 0",
     words: "alternates bit 7 of its heartbeat as if it were guarded",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.heartbeat_toggles = true,
 };
 
@@ -52,7 +47,6 @@ pub(crate) const CONSUMER_BEFORE_FIRST_HEARTBEAT: Fault = Fault {
     breaks: "CiA 301: object 1016h, monitoring starts after the first heartbeat",
     words: "misses a heartbeat of a node that has sent none yet",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_waits_for_first = false,
 };
 
@@ -61,7 +55,6 @@ pub(crate) const CONSUMER_TAKES_ANY_NODE: Fault = Fault {
     breaks: "CiA 301: object 1016h, node-ID",
     words: "takes the heartbeat of any node for that of the node in 1016h",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_compares_node = false,
 };
 
@@ -70,7 +63,6 @@ pub(crate) const CONSUMER_ENTRY_TWICE_TAKEN: Fault = Fault {
     breaks: "CiA 301: object 1016h, abort code 06040043h",
     words: "takes two entries of 1016h for the same node",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_entry_once = false,
 };
 
@@ -79,7 +71,6 @@ pub(crate) const CONSUMER_TIME_HALVED: Fault = Fault {
     breaks: "CiA 301: object 1016h counts milliseconds",
     words: "misses a heartbeat after half the time that 1016h says",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_percent = 50,
 };
 
@@ -88,7 +79,6 @@ pub(crate) const CONSUMER_SECOND_ENTRY_IGNORED: Fault = Fault {
     breaks: "CiA 301: object 1016h",
     words: "listens to the node in the first entry of 1016h alone",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_entries = 1,
 };
 
@@ -97,7 +87,6 @@ pub(crate) const CONSUMER_NOT_STOPPED: Fault = Fault {
     breaks: "CiA 301: object 1016h, 0 disables an entry",
     words: "goes on listening to a node whose entry of 1016h is set to 0",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_can_be_stopped = false,
 };
 
@@ -106,7 +95,6 @@ pub(crate) const CONSUMER_WANTS_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: heartbeat protocol, heartbeat event",
     words: "takes the heartbeats of a node that is not operational for none",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_takes_any_state = false,
 };
 
@@ -115,7 +103,6 @@ pub(crate) const CONSUMER_DOES_NOT_RESUME: Fault = Fault {
     breaks: "CiA 301: heartbeat protocol, heartbeat event resolved",
     words: "monitors a node no more once it has been missing",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.consumer_resumes = false,
 };
 
@@ -124,7 +111,6 @@ pub(crate) const LOST_HEARTBEAT_REPORTED_AGAIN: Fault = Fault {
     breaks: "CiA 301: emergency object, once for an error event",
     words: "reports a missing heartbeat again and again",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.lost_heartbeat_reported_once = false,
 };
 
@@ -133,7 +119,6 @@ pub(crate) const LOST_HEARTBEAT_CODE_WRONG: Fault = Fault {
     breaks: "CiA 301: emergency error code 8130h",
     words: "reports a missing heartbeat as 8100h",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.lost_heartbeat_code = 0x8100,
 };
 
@@ -142,7 +127,6 @@ pub(crate) const GUARDING_TOGGLE_STARTS_WITH_1: Fault = Fault {
     breaks: "CiA 301: node guarding protocol, toggle bit",
     words: "gives its first guarding answer the toggle bit 1",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.first_toggle = true,
 };
 
@@ -151,7 +135,6 @@ pub(crate) const GUARDING_TOGGLE_NOT_RESTARTED: Fault = Fault {
     breaks: "CiA 301: node guarding protocol, toggle bit after Reset communication",
     words: "goes on alternating the toggle bit over reset communication",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.toggle_restarts = false,
 };
 
@@ -160,7 +143,6 @@ pub(crate) const LIFE_TIME_BEFORE_FIRST_REQUEST: Fault = Fault {
     breaks: "CiA 301: life guarding protocol, starts with the first guarding request",
     words: "misses a master that has not begun to guard",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.life_time_waits_for_first = false,
 };
 
@@ -169,7 +151,6 @@ pub(crate) const LIFE_TIME_WITHOUT_FACTOR: Fault = Fault {
     breaks: "CiA 301: object 100Dh, life time is guard time times factor",
     words: "misses its master after the guard time, whatever the factor",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.life_time_factor_used = false,
 };
 
@@ -178,7 +159,6 @@ pub(crate) const LIFE_TIME_FACTOR_ZERO_TAKEN: Fault = Fault {
     breaks: "CiA 301: object 100Dh, 0 disables life guarding",
     words: "misses its master though the life time factor is 0",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.life_time_needs_factor = false,
 };
 
@@ -187,7 +167,6 @@ pub(crate) const GUARDING_ANSWER_AS_LONG_AS_REQUEST: Fault = Fault {
     breaks: "CiA 301: node guarding protocol, one byte",
     words: "answers a guarding request with as many bytes as that says",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| {
         behaviour
             .canopen
@@ -201,7 +180,6 @@ pub(crate) const GUARDING_ANSWERS_FOR_ANY_NODE: Fault = Fault {
     breaks: "CiA 301: node guarding protocol, identifier 700h and the node-ID",
     words: "answers a guarding request to another node",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| {
         behaviour
             .canopen
@@ -215,7 +193,6 @@ pub(crate) const GUARDING_ENDS_HEARTBEAT: Fault = Fault {
     breaks: "CiA 301: error control, a heartbeat goes before guarding",
     words: "ends its heartbeat when it is guarded",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.guarding_ends_heartbeat = true,
 };
 
@@ -224,7 +201,6 @@ pub(crate) const ERROR_BEHAVIOUR_FIXED: Fault = Fault {
     breaks: "CiA 301: object 1029h, 2 leads to Stopped",
     words: "becomes pre-operational after a communication error, whatever 1029h holds",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.error_behaviour_fixed = Some(0),
 };
 
@@ -233,7 +209,6 @@ pub(crate) const ERROR_BEHAVIOUR_STOPS: Fault = Fault {
     breaks: "CiA 301: object 1029h, default",
     words: "becomes stopped after a communication error, whatever 1029h holds",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.error_behaviour_fixed = Some(2),
 };
 
@@ -242,7 +217,6 @@ pub(crate) const ERROR_BEHAVIOUR_OUT_OF_STOPPED: Fault = Fault {
     breaks: "CiA 301: object 1029h, 0 leads from Operational to Pre-operational",
     words: "becomes pre-operational in Stopped when it misses a heartbeat",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| behaviour.canopen.error_control.error_behaviour_everywhere = true,
 };
 

@@ -7,7 +7,6 @@ pub(crate) const LSS_ANY_MODE_CONFIGURES: Fault = Fault {
     breaks: "CiA 305: switch state global protocol, mode",
     words: "goes into configuration at a mode of switch state global that is reserved",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.any_mode_configures = true,
 };
 
@@ -16,7 +15,6 @@ pub(crate) const LSS_STAYS_IN_CONFIGURATION: Fault = Fault {
     breaks: "CiA 305: switch state global protocol, mode 0",
     words: "does not leave configuration when it is told to wait",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.stays_in_configuration = true,
 };
 
@@ -25,7 +23,6 @@ pub(crate) const LSS_CONFIGURATION_SURVIVES_RESET: Fault = Fault {
     breaks: "CiA 305: LSS states, waiting after NMT initialisation",
     words: "is still in configuration after a reset of the communication",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.configuration_survives_reset = true,
 };
 
@@ -34,7 +31,6 @@ pub(crate) const LSS_VENDOR_IGNORED: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, vendor-ID",
     words: "is selected by any vendor-ID",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.part_ignored = Some(0),
 };
 
@@ -43,7 +39,6 @@ pub(crate) const LSS_PRODUCT_IGNORED: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, product code",
     words: "is selected by any product code",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.part_ignored = Some(1),
 };
 
@@ -52,7 +47,6 @@ pub(crate) const LSS_REVISION_IGNORED: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, revision number",
     words: "is selected by any revision number",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.part_ignored = Some(2),
 };
 
@@ -61,7 +55,6 @@ pub(crate) const LSS_ORDER_IGNORED: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, order of the four requests",
     words: "is selected by the four numbers of its identity in any order",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.order_ignored = true,
 };
 
@@ -70,7 +63,6 @@ pub(crate) const LSS_EVERY_NUMBER_CONFIRMED: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, one response to the fourth request",
     words: "confirms each number of its LSS address and not only the last",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.every_part_confirmed = true,
 };
 
@@ -79,7 +71,6 @@ pub(crate) const LSS_LOW_WORDS_COMPARED: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, numbers of 32 bits",
     words: "is selected by an LSS address of whose numbers the low 16 bits are right",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.low_words_compared = true,
 };
 
@@ -88,7 +79,6 @@ pub(crate) const LSS_SERIAL_SELECTS_ALONE: Fault = Fault {
     breaks: "CiA 305: switch state selective protocol, four requests",
     words: "is selected by its serial number alone",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.serial_selects_alone = true,
 };
 
@@ -97,7 +87,6 @@ pub(crate) const LSS_ANSWERS_TWICE: Fault = Fault {
     breaks: "CiA 305: LSS protocols, one response",
     words: "sends every answer twice",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.answers_twice = true,
 };
 
@@ -106,7 +95,6 @@ pub(crate) const LSS_SELECTION_GOES_ON: Fault = Fault {
     breaks: "CiA 305: switch state global protocol, waiting",
     words: "goes on with a selection that a switch to waiting has ended",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.selection_goes_on = true,
 };
 
@@ -115,7 +103,6 @@ pub(crate) const LSS_INQUIRED_IN_WAITING: Fault = Fault {
     breaks: "CiA 305: LSS states and services, inquiries only in configuration",
     words: "answers inquiries while it is waiting",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.inquired_in_waiting = true,
 };
 
@@ -124,7 +111,6 @@ pub(crate) const LSS_CONFIGURED_IN_WAITING: Fault = Fault {
     breaks: "CiA 305: LSS states and services, configuration only in configuration",
     words: "takes a node-ID and a bit timing while it is waiting",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.configured_in_waiting = true,
 };
 
@@ -133,7 +119,6 @@ pub(crate) const LSS_RESERVED_BYTES_STALE: Fault = Fault {
     breaks: "CiA 305: LSS messages, reserved bytes are zero",
     words: "leaves what its last answer held in the reserved bytes of the next",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.reserved_bytes_stale = true,
 };
 
@@ -142,7 +127,6 @@ pub(crate) const LSS_ANSWERS_CUT_SHORT: Fault = Fault {
     breaks: "CiA 305: LSS messages have eight bytes",
     words: "sends answers without their reserved bytes",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.answers_cut_short = true,
 };
 
@@ -151,7 +135,6 @@ pub(crate) const LSS_PENDING_NODE_TOLD: Fault = Fault {
     breaks: "CiA 305: inquire node-ID protocol, the active node-ID",
     words: "tells the node-ID that was configured before it is in use",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.pending_node_told = true,
 };
 
@@ -160,7 +143,6 @@ pub(crate) const LSS_NODE_127_REFUSED: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, 1 to 127",
     words: "refuses node-ID 127",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.node_refused = Some(127),
 };
 
@@ -169,7 +151,6 @@ pub(crate) const LSS_NODE_255_REFUSED: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, 255 makes a slave unconfigured",
     words: "refuses 255, no node-ID",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.node_refused = Some(255),
 };
 
@@ -178,7 +159,6 @@ pub(crate) const LSS_NODE_0_TAKEN: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, error code 1",
     words: "says that it takes node-ID 0",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.node_taken = Some(0),
 };
 
@@ -187,7 +167,6 @@ pub(crate) const LSS_NODE_128_TAKEN: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, error code 1",
     words: "says that it takes node-ID 128",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.node_taken = Some(128),
 };
 
@@ -196,7 +175,6 @@ pub(crate) const LSS_REFUSED_NODE_KEPT: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, error code 1",
     words: "has no node-ID after the next reset when it has refused one",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.refused_node_kept = true,
 };
 
@@ -205,7 +183,6 @@ pub(crate) const LSS_NODE_OF_SIX_BITS: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, 1 to 127",
     words: "takes a node-ID above 63 for one that is 64 less",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.node_of_six_bits = true,
 };
 
@@ -214,7 +191,6 @@ pub(crate) const LSS_NODE_WAITS_FOR_RESET_NODE: Fault = Fault {
     breaks: "CiA 305: configure node-ID protocol, active after reset communication",
     words: "keeps its node-ID over a reset of the communication",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.node_waits_for_reset_node = true,
 };
 
@@ -223,7 +199,6 @@ pub(crate) const LSS_STORED_UNASKED: Fault = Fault {
     breaks: "CiA 305: store configuration protocol",
     words: "stores a node-ID when it is configured",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.stored_unasked = true,
 };
 
@@ -232,7 +207,6 @@ pub(crate) const LSS_STORE_UNANSWERED: Fault = Fault {
     breaks: "CiA 305: store configuration protocol, response",
     words: "does not answer a request to store",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.store_unanswered = true,
 };
 
@@ -241,7 +215,6 @@ pub(crate) const LSS_TABLE_IGNORED: Fault = Fault {
     breaks: "CiA 305: configure bit timing protocol, table selector",
     words: "takes an index of table 0 whatever table is named",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.table_ignored = true,
 };
 
@@ -250,7 +223,6 @@ pub(crate) const LSS_LAST_INDEX_FOR_ALL: Fault = Fault {
     breaks: "CiA 305: configure bit timing protocol, table index",
     words: "takes an index beyond the table for its last",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.last_index_for_all = true,
 };
 
@@ -259,7 +231,6 @@ pub(crate) const LSS_BIT_TIMING_AT_ONCE: Fault = Fault {
     breaks: "CiA 305: configure bit timing protocol, active after activation or reset",
     words: "uses a bit timing as soon as it is configured",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.bit_timing_at_once = true,
 };
 
@@ -268,7 +239,6 @@ pub(crate) const LSS_SHORT_REQUESTS_TAKEN: Fault = Fault {
     breaks: "CiA 305: LSS messages have eight bytes",
     words: "takes requests of fewer than eight bytes",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.short_requests_taken = true,
 };
 
@@ -277,7 +247,6 @@ pub(crate) const LSS_UNKNOWN_ANSWERED: Fault = Fault {
     breaks: "CiA 305: command specifiers",
     words: "answers a request with a command specifier that there is none of",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.unknown_answered = true,
 };
 
@@ -286,7 +255,6 @@ pub(crate) const LSS_NOT_IN_OPERATIONAL: Fault = Fault {
     breaks: "CiA 305: LSS in every NMT state",
     words: "takes no LSS requests in Operational",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.not_in_operational = true,
 };
 
@@ -295,7 +263,6 @@ pub(crate) const LSS_NOT_IN_STOPPED: Fault = Fault {
     breaks: "CiA 305: LSS in every NMT state",
     words: "takes no LSS requests in Stopped",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.not_in_stopped = true,
 };
 
@@ -304,7 +271,6 @@ pub(crate) const LSS_SILENT_AFTER_127_ANSWERS: Fault = Fault {
     breaks: "CiA 305: LSS protocols, responses",
     words: "answers 127 requests and no more",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.answers_at_most = Some(127),
 };
 
@@ -313,7 +279,6 @@ pub(crate) const LSS_ACTIVATED_IN_WAITING: Fault = Fault {
     breaks: "CiA 305: LSS states and services, activate bit timing only in configuration",
     words: "activates a bit timing while it is waiting",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.activated_in_waiting = true,
 };
 
@@ -322,7 +287,6 @@ pub(crate) const LSS_TALKS_WHILE_SWITCHING: Fault = Fault {
     breaks: "CiA 305: activate bit timing parameters protocol, switch delay",
     words: "goes on sending while a bit timing is being activated",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.talks_while_switching = true,
 };
 
@@ -331,7 +295,6 @@ pub(crate) const LSS_IDENTIFY_VENDOR_IGNORED: Fault = Fault {
     breaks: "CiA 305: identify remote slave protocol, vendor-ID",
     words: "identifies itself whatever vendor-ID is named",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.identify_step_ignored = Some(0),
 };
 
@@ -340,7 +303,6 @@ pub(crate) const LSS_IDENTIFY_REVISION_HIGH_IGNORED: Fault = Fault {
     breaks: "CiA 305: identify remote slave protocol, highest revision number",
     words: "identifies itself though its revision number is above the highest that is named",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.identify_step_ignored = Some(3),
 };
 
@@ -349,7 +311,6 @@ pub(crate) const LSS_IDENTIFY_BOUNDS_EXCLUSIVE: Fault = Fault {
     breaks: "CiA 305: identify remote slave protocol, the bounds belong to the range",
     words: "does not identify itself where a bound is its own number",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.identify_bounds_exclusive = true,
 };
 
@@ -358,7 +319,6 @@ pub(crate) const LSS_IDENTIFY_BEGINS_ANYWHERE: Fault = Fault {
     breaks: "CiA 305: identify remote slave protocol, six requests",
     words: "identifies itself at the last of six numbers, whether the others have come or not",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.identify_begins_anywhere = true,
 };
 
@@ -367,7 +327,6 @@ pub(crate) const LSS_UNCONFIGURED_WITH_NODE: Fault = Fault {
     breaks: "CiA 305: identify non-configured remote slave protocol",
     words: "says that it has no node-ID though it has one",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.unconfigured_with_node = true,
 };
 
@@ -376,7 +335,6 @@ pub(crate) const LSS_UNCONFIGURED_SILENT: Fault = Fault {
     breaks: "CiA 305: identify non-configured slave protocol",
     words: "does not say that it has no node-ID",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.unconfigured_silent = true,
 };
 
@@ -385,7 +343,6 @@ pub(crate) const LSS_FASTSCAN_NUMBER_IGNORED: Fault = Fault {
     breaks: "CiA 305: fastscan protocol, IDNumber",
     words: "answers a fastscan whatever number is named",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.scan_number_ignored = true,
 };
 
@@ -394,7 +351,6 @@ pub(crate) const LSS_FASTSCAN_LOW_BITS_COMPARED: Fault = Fault {
     breaks: "CiA 305: fastscan protocol, BitChecked",
     words: "compares the bits below the one that is checked, too",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.scan_low_bits_compared = true,
 };
 
@@ -403,7 +359,6 @@ pub(crate) const LSS_FASTSCAN_PART_IGNORED: Fault = Fault {
     breaks: "CiA 305: fastscan protocol, LSSSub",
     words: "answers for a part of its identity that is not the one to be asked for",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.scan_part_ignored = true,
 };
 
@@ -412,7 +367,6 @@ pub(crate) const LSS_FASTSCAN_GOES_ON: Fault = Fault {
     breaks: "CiA 305: fastscan protocol, BitChecked 128",
     words: "does not begin again with its vendor-ID when a fastscan begins",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.scan_goes_on = true,
 };
 
@@ -421,7 +375,6 @@ pub(crate) const LSS_FASTSCAN_DOES_NOT_SELECT: Fault = Fault {
     breaks: "CiA 305: fastscan protocol, the slave that was found is in configuration",
     words: "is found by a fastscan and stays in waiting",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.scan_does_not_select = true,
 };
 
@@ -430,7 +383,6 @@ pub(crate) const LSS_FASTSCAN_IN_CONFIGURATION: Fault = Fault {
     breaks: "CiA 305: LSS states and services, fastscan only in waiting",
     words: "takes part in a fastscan while it is in configuration",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.lss.scan_in_configuration = true,
 };
 

@@ -9,7 +9,6 @@ pub(crate) const START_IGNORED_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT state machine, start remote node",
     words: "does not obey start in Stopped, only in Pre-operational",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.ignored = Some((State::Stopped, Command::Enter(State::Operational)));
     },
@@ -20,7 +19,6 @@ pub(crate) const STOP_IGNORED_IN_PRE_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: NMT state machine, stop remote node",
     words: "does not obey stop in Pre-operational, only in Operational",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.ignored =
             Some((State::PreOperational, Command::Enter(State::Stopped)));
@@ -32,7 +30,6 @@ pub(crate) const PRE_OPERATIONAL_IGNORED_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT state machine, enter pre-operational",
     words: "does not obey enter pre-operational in Stopped",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.ignored =
             Some((State::Stopped, Command::Enter(State::PreOperational)));
@@ -44,7 +41,6 @@ pub(crate) const RESET_NODE_IGNORED_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT state machine, reset node",
     words: "does not obey reset node in Stopped",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.ignored = Some((State::Stopped, Command::ResetNode)),
 };
 
@@ -53,7 +49,6 @@ pub(crate) const RESET_COMMUNICATION_IGNORED_IN_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: NMT state machine, reset communication",
     words: "does not obey reset communication in Operational",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.ignored = Some((State::Operational, Command::ResetCommunication));
     },
@@ -64,7 +59,6 @@ pub(crate) const NMT_COMMAND_OF_ONE_BYTE_OBEYED: Fault = Fault {
     breaks: "CiA 301: NMT protocols, two bytes",
     words: "takes a command without a node-ID for one to all nodes",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.one_byte_taken = true,
 };
 
@@ -73,7 +67,6 @@ pub(crate) const NMT_COMMAND_OF_THREE_BYTES_RESETS: Fault = Fault {
     breaks: "CiA 301: NMT protocols, two bytes",
     words: "resets itself when an NMT command has more than two bytes",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.long_commands_reset = true,
 };
 
@@ -82,7 +75,6 @@ pub(crate) const NMT_EXTENDED_IDENTIFIER_OBEYED: Fault = Fault {
     breaks: "CiA 301: NMT protocols, identifier 0 of 11 bits",
     words: "takes a frame with the 29-bit identifier 0 for an NMT command",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.extended_identifier_taken = true,
 };
 
@@ -91,7 +83,6 @@ pub(crate) const BOOT_UP_REPEATED: Fault = Fault {
     breaks: "CiA 301: boot-up protocol, after initialisation",
     words: "sends its boot-up message whenever it is told to enter Pre-operational",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.boot_up_repeated = true,
 };
 
@@ -100,7 +91,6 @@ pub(crate) const STARTS_BY_ITSELF: Fault = Fault {
     breaks: "CiA 301: NMT state machine, from Initialisation to Pre-operational",
     words: "becomes operational after its boot-up with no command",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.starts_itself = true,
 };
 
@@ -109,7 +99,6 @@ pub(crate) const APPLICATION_KEPT_BY_RESET_NODE: Fault = Fault {
     breaks: "CiA 301: NMT state Reset application, power-on values from 2000h on",
     words: "resets its communication alone with reset node",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.restored_by_reset_node = 0x1000..=0x1FFF,
 };
 
@@ -118,7 +107,6 @@ pub(crate) const COMMUNICATION_KEPT_BY_RESET_NODE: Fault = Fault {
     breaks: "CiA 301: NMT state Reset communication, which follows Reset application",
     words: "keeps its communication parameters over reset node",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.restored_by_reset_node = 0x2000..=0xFFFF,
 };
 
@@ -127,7 +115,6 @@ pub(crate) const COMMUNICATION_KEPT_BY_RESET_COMMUNICATION: Fault = Fault {
     breaks: "CiA 301: NMT state Reset communication, power-on values of 1000h to 1FFFh",
     words: "keeps its communication parameters over reset communication",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.restored_by_reset_communication = 0x0000..=0x0FFF,
 };
 
@@ -136,7 +123,6 @@ pub(crate) const APPLICATION_LOST_BY_RESET_COMMUNICATION: Fault = Fault {
     breaks: "CiA 301: NMT state Reset communication, 1000h to 1FFFh alone",
     words: "gives all of its objects the values of power-on with reset communication",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.restored_by_reset_communication = 0x0000..=0xFFFF,
 };
 
@@ -145,7 +131,6 @@ pub(crate) const BOOT_UP_TWICE: Fault = Fault {
     breaks: "CiA 301: boot-up protocol",
     words: "sends its boot-up message twice",
     caught_by: "boot-up",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.boot_ups = 2,
 };
 
@@ -154,7 +139,6 @@ pub(crate) const BOOT_UP_SHOWS_STATE: Fault = Fault {
     breaks: "CiA 301: boot-up protocol, one byte of 0",
     words: "sends the state Pre-operational, 7Fh, in its boot-up message",
     caught_by: "boot-up",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.boot_up_byte = 0x7F,
 };
 
@@ -163,7 +147,6 @@ pub(crate) const BOOT_UP_AFTER_HEARTBEAT: Fault = Fault {
     breaks: "CiA 301: boot-up protocol",
     words: "sends a heartbeat before its boot-up message",
     caught_by: "boot-up",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.heartbeat_before_boot_up = true,
 };
 
@@ -172,7 +155,6 @@ pub(crate) const BOOT_UP_ONLY_AFTER_RESET_NODE: Fault = Fault {
     breaks: "CiA 301: boot-up protocol",
     words: "sends no boot-up message after reset communication",
     caught_by: "boot-up",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.boot_up_after_reset_communication = false,
 };
 
@@ -181,7 +163,6 @@ pub(crate) const SDO_SILENT_IN_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, SDO in Operational",
     words: "answers SDO requests in Pre-operational alone",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.exchanged = Some((State::Operational, Service::Sdo)),
 };
 
@@ -190,7 +171,6 @@ pub(crate) const SDO_OBEYED_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, no SDO in Stopped",
     words: "does what an SDO request says in Stopped, and only does not answer",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.requests_done_in_stopped = true,
 };
 
@@ -199,7 +179,6 @@ pub(crate) const SYNC_PRODUCED_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, no SYNC in Stopped",
     words: "goes on producing SYNC in Stopped",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.exchanged = Some((State::Stopped, Service::Sync)),
 };
 
@@ -208,7 +187,6 @@ pub(crate) const SYNC_SILENT_IN_PRE_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, SYNC in Pre-operational",
     words: "produces SYNC in Operational alone",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.exchanged = Some((State::PreOperational, Service::Sync));
     },
@@ -219,7 +197,6 @@ pub(crate) const EMERGENCY_SENT_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, no EMCY in Stopped",
     words: "sends its EMCY in Stopped",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.exchanged = Some((State::Stopped, Service::Emergency));
     },
@@ -230,7 +207,6 @@ pub(crate) const EMERGENCY_SILENT_IN_PRE_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, EMCY in Pre-operational",
     words: "sends its EMCY in Operational alone",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.exchanged = Some((State::PreOperational, Service::Emergency));
     },
@@ -241,7 +217,6 @@ pub(crate) const TIME_TAKEN_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, no TIME in Stopped",
     words: "takes a TIME in Stopped",
     caught_by: "nmt",
-    named: &[],
     apply: |behaviour| behaviour.canopen.nmt.exchanged = Some((State::Stopped, Service::Time)),
 };
 
@@ -250,7 +225,6 @@ pub(crate) const ERROR_CONTROL_SILENT_IN_STOPPED: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, error control in Stopped",
     words: "sends no heartbeat and answers no guarding in Stopped",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.exchanged = Some((State::Stopped, Service::ErrorControl));
     },
@@ -261,7 +235,6 @@ pub(crate) const ERROR_CONTROL_SILENT_IN_PRE_OPERATIONAL: Fault = Fault {
     breaks: "CiA 301: NMT states and communication objects, error control in Pre-operational",
     words: "sends heartbeats and answers guarding in Operational and Stopped alone",
     caught_by: "error-control",
-    named: &[],
     apply: |behaviour| {
         behaviour.canopen.nmt.exchanged = Some((State::PreOperational, Service::ErrorControl));
     },

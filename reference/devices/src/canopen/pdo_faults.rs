@@ -7,7 +7,6 @@ pub(crate) const IDENTIFIER_CHANGED_WHILE_VALID: Fault = Fault {
     breaks: "CiA 301: PDO COB-ID, bits 0 to 29 stay while the PDO exists",
     words: "gives a PDO that exists another identifier",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.identifier_locked = false,
 };
 
@@ -16,7 +15,6 @@ pub(crate) const INHIBIT_TIME_CHANGED_WHILE_VALID: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, inhibit time",
     words: "takes a new inhibit time for a TPDO that exists",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.inhibit_time_locked = false,
 };
 
@@ -25,7 +23,6 @@ pub(crate) const START_VALUE_CHANGED_WHILE_VALID: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, SYNC start value",
     words: "takes a new SYNC start value for a TPDO that exists",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.start_value_locked = false,
 };
 
@@ -34,7 +31,6 @@ pub(crate) const EXTENDED_IDENTIFIER_CONFIRMED: Fault = Fault {
     breaks: "CiA 301: PDO COB-ID, bit 29",
     words: "confirms a COB-ID of 29 bits, and keeps the one it had",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.extended_identifier_refused = false,
 };
 
@@ -43,7 +39,6 @@ pub(crate) const PDO_IDENTIFIER_NOT_USED: Fault = Fault {
     breaks: "CiA 301: PDO COB-ID, bits 0 to 10",
     words: "stores a new identifier for a PDO, and goes on with the predefined one",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.identifier_used = false,
 };
 
@@ -52,7 +47,6 @@ pub(crate) const TRANSMISSION_TYPE_NOT_STORED: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, transmission type",
     words: "confirms a transmission type, and keeps the one it had",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.type_stored = false,
 };
 
@@ -61,7 +55,6 @@ pub(crate) const EXTENDED_FRAME_TAKEN: Fault = Fault {
     breaks: "CiA 301: PDO COB-ID, bit 29 not set: an identifier of 11 bits",
     words: "takes a frame of 29 bits for the RPDO with the same low 11",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.extended_frames_passed_over = false,
 };
 
@@ -70,7 +63,6 @@ pub(crate) const MAPPING_CHANGED_WHILE_VALID: Fault = Fault {
     breaks: "CiA 301: PDO mapping parameter, procedure",
     words: "takes a new mapping for a PDO that exists",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.mapping_locked = false,
 };
 
@@ -79,7 +71,6 @@ pub(crate) const ENTRY_CHANGED_WHILE_COUNTED: Fault = Fault {
     breaks: "CiA 301: PDO mapping parameter, procedure",
     words: "takes a mapping entry while sub-index 0 is not 0",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.entries_locked = false,
 };
 
@@ -88,7 +79,6 @@ pub(crate) const MAPPING_COUNT_UNCHECKED: Fault = Fault {
     breaks: "CiA 301: PDO mapping parameter, sub-index 0",
     words: "takes any number of mapped objects",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.count_checked = false,
 };
 
@@ -97,7 +87,6 @@ pub(crate) const MAPPING_LENGTH_UNCHECKED: Fault = Fault {
     breaks: "CiA 301: PDO mapping parameter, at most 64 bits",
     words: "takes a mapping of more than 64 bits",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.length_checked = false,
 };
 
@@ -106,7 +95,6 @@ pub(crate) const UNMAPPABLE_MAPPED: Fault = Fault {
     breaks: "CiA 301: SDO abort code 06040041h",
     words: "maps an object that its EDS does not let into a PDO",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.mappable_checked = false,
 };
 
@@ -115,7 +103,6 @@ pub(crate) const MAPPING_DIRECTION_IGNORED: Fault = Fault {
     breaks: "CiA 301: SDO abort code 06040041h",
     words: "maps a read-only object in an RPDO, and a write-only one in a TPDO",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.direction_checked = false,
 };
 
@@ -124,7 +111,6 @@ pub(crate) const ABSENT_OBJECT_MAPPED: Fault = Fault {
     breaks: "CiA 301: SDO abort codes 06020000h and 06040041h",
     words: "maps an object that does not exist",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.existence_checked = false,
 };
 
@@ -133,7 +119,6 @@ pub(crate) const MAPPING_ENTRY_LENGTH_IGNORED: Fault = Fault {
     breaks: "CiA 301: PDO mapping parameter, length of the object",
     words: "maps an object with a length that it does not have",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.entry_length_checked = false,
 };
 
@@ -142,7 +127,6 @@ pub(crate) const DUMMY_REFUSED: Fault = Fault {
     breaks: "CiA 301: dummy mapping",
     words: "refuses the dummies that its EDS lists",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.dummies_taken = false,
 };
 
@@ -151,7 +135,6 @@ pub(crate) const DUMMY_SENT: Fault = Fault {
     breaks: "CiA 301: dummy mapping, for RPDOs",
     words: "maps a dummy in a TPDO",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.dummies_received_only = false,
 };
 
@@ -160,7 +143,6 @@ pub(crate) const REFUSED_ENTRY_CLEARS: Fault = Fault {
     breaks: "CiA 301: SDO abort transfer, the object stays as it was",
     words: "refuses a mapping entry, and clears the one that was there",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.refused_entry_kept = false,
 };
 
@@ -169,7 +151,6 @@ pub(crate) const MAPPING_NOT_STORED: Fault = Fault {
     breaks: "CiA 301: object 1010h",
     words: "stores its communication parameters without the mappings",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.mapping_stored = false,
 };
 
@@ -178,7 +159,6 @@ pub(crate) const PDO_KEPT_BY_RESET: Fault = Fault {
     breaks: "CiA 301: NMT, reset communication sets the power-on values",
     words: "keeps the parameters of its PDOs over reset communication",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.reset_restores = false,
 };
 
@@ -187,7 +167,6 @@ pub(crate) const INVALID_RPDO_TAKEN: Fault = Fault {
     breaks: "CiA 301: PDO COB-ID, bit 31",
     words: "takes an RPDO though bit 31 of its COB-ID is set",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.invalid_rpdo_passed_over = false,
 };
 
@@ -196,7 +175,6 @@ pub(crate) const SHORT_RPDO_TAKEN: Fault = Fault {
     breaks: "CiA 301: RPDO with fewer bytes than mapped",
     words: "takes the bytes that there are of a short RPDO, and 0 for the others",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.short_passed_over = false,
 };
 
@@ -205,7 +183,6 @@ pub(crate) const SHORT_RPDO_UNREPORTED: Fault = Fault {
     breaks: "CiA 301: EMCY 8210h",
     words: "passes over a short RPDO without an EMCY",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.short_reported = false,
 };
 
@@ -214,7 +191,6 @@ pub(crate) const LONG_RPDO_PASSED_OVER: Fault = Fault {
     breaks: "CiA 301: RPDO with more bytes than mapped",
     words: "takes nothing of an RPDO that is longer than its mapping",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.long_taken = false,
 };
 
@@ -223,7 +199,6 @@ pub(crate) const LATE_RPDO_UNREPORTED: Fault = Fault {
     breaks: "CiA 301: RPDO communication parameter, event timer; EMCY 8250h",
     words: "does not say that an RPDO is late",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.deadline_noticed = false,
 };
 
@@ -232,7 +207,6 @@ pub(crate) const RPDO_LATE_FROM_START: Fault = Fault {
     breaks: "CiA 301: RPDO communication parameter, event timer runs from a reception",
     words: "reports an RPDO as late that has never come",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.deadline_from_first = false,
 };
 
@@ -241,7 +215,6 @@ pub(crate) const EVENT_RPDO_WAITS: Fault = Fault {
     breaks: "CiA 301: event-driven RPDO, actuated at once",
     words: "keeps the values of an event-driven RPDO until SYNC",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.event_rpdo_at_once = false,
 };
 
@@ -250,7 +223,6 @@ pub(crate) const ACYCLIC_RPDO_AT_ONCE: Fault = Fault {
     breaks: "CiA 301: RPDO transmission type 0, actuated with the next SYNC",
     words: "takes the values of an RPDO of type 0 when it arrives",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.acyclic_rpdo_waits = false,
 };
 
@@ -259,7 +231,6 @@ pub(crate) const FIRST_RPDO_COUNTS: Fault = Fault {
     breaks: "CiA 301: synchronous RPDO, the data received last",
     words: "takes the first of several RPDOs before a SYNC, not the last",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.last_rpdo_counts = false,
 };
 
@@ -268,7 +239,6 @@ pub(crate) const SYNCHRONOUS_RPDO_LOST: Fault = Fault {
     breaks: "CiA 301: synchronous RPDO, actuated with the next SYNC",
     words: "does not take synchronous RPDOs at all",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.rpdo_actuated = false,
 };
 
@@ -277,7 +247,6 @@ pub(crate) const ACYCLIC_TPDO_CYCLIC: Fault = Fault {
     breaks: "CiA 301: TPDO transmission type 0",
     words: "sends a TPDO of type 0 with every SYNC, changed or not",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.acyclic_needs_event = false,
 };
 
@@ -286,7 +255,6 @@ pub(crate) const ACYCLIC_TPDO_AT_ONCE: Fault = Fault {
     breaks: "CiA 301: TPDO transmission type 0, synchronous",
     words: "sends a TPDO of type 0 when something changes, not with SYNC",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.acyclic_waits_for_sync = false,
 };
 
@@ -295,7 +263,6 @@ pub(crate) const CHANGE_UNNOTICED: Fault = Fault {
     breaks: "CiA 301: event-driven TPDO",
     words: "does not send an event-driven TPDO when what it carries changes",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.changes_noticed = false,
 };
 
@@ -304,7 +271,6 @@ pub(crate) const INHIBITED_EVENT_LOST: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, inhibit time",
     words: "forgets a change that came before the inhibit time was over",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.inhibited_event_kept = false,
 };
 
@@ -313,7 +279,6 @@ pub(crate) const EVENT_TPDO_WITH_SYNC: Fault = Fault {
     breaks: "CiA 301: TPDO transmission types 254 and 255",
     words: "sends an event-driven TPDO with every SYNC too",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.sync_sends_synchronous_only = false,
 };
 
@@ -322,7 +287,6 @@ pub(crate) const TIMER_OF_SYNCHRONOUS: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, event timer for types 254 and 255",
     words: "sends a synchronous TPDO with its event timer too",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.timer_event_driven_only = false,
 };
 
@@ -331,7 +295,6 @@ pub(crate) const EVENT_TIMER_STANDS: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, event timer",
     words: "sends no TPDO when its event timer is over",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.timer_runs = false,
 };
 
@@ -340,7 +303,6 @@ pub(crate) const REMOTE_TPDO_WITH_SYNC: Fault = Fault {
     breaks: "CiA 301: TPDO transmission types 252 and 253, on a remote frame only",
     words: "sends a TPDO of type 252 or 253 with SYNC",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.sync_sends_no_remote = false,
 };
 
@@ -349,7 +311,6 @@ pub(crate) const REMOTE_FRAME_UNANSWERED: Fault = Fault {
     breaks: "CiA 301: TPDO transmission types 252 and 253",
     words: "takes transmission types 252 and 253, and answers no remote frame",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.remote_answered = false,
 };
 
@@ -358,7 +319,6 @@ pub(crate) const LONG_RATIO_CUT: Fault = Fault {
     breaks: "CiA 301: TPDO transmission type 1 to 240",
     words: "counts SYNCs in seven bits: type 130 is sent with every second",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.long_ratios_counted = false,
 };
 
@@ -367,7 +327,6 @@ pub(crate) const SYNCHRONOUS_ON_START: Fault = Fault {
     breaks: "CiA 301: synchronous TPDO, sent with SYNC",
     words: "sends a synchronous TPDO on entering Operational",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.synchronous_waits_for_first = false,
 };
 
@@ -376,7 +335,6 @@ pub(crate) const ONE_TPDO_PER_SYNC: Fault = Fault {
     breaks: "CiA 301: synchronous TPDO",
     words: "sends one TPDO with a SYNC, though several are due",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.every_due_sent = false,
 };
 
@@ -385,7 +343,6 @@ pub(crate) const MAPPING_ORDER_TURNED: Fault = Fault {
     breaks: "CiA 301: PDO mapping, the order of the entries",
     words: "sends the mapped objects in the opposite order",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.mapping_order_kept = false,
 };
 
@@ -394,7 +351,6 @@ pub(crate) const TPDO_ALWAYS_EIGHT: Fault = Fault {
     breaks: "CiA 301: PDO, as long as its mapping",
     words: "sends 8 bytes, whatever is mapped",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.tpdo_length_kept = false,
 };
 
@@ -403,7 +359,6 @@ pub(crate) const TPDO_STALE: Fault = Fault {
     breaks: "CiA 301: TPDO, process data of now",
     words: "sends the values of the time before",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.tpdo_fresh = false,
 };
 
@@ -412,7 +367,6 @@ pub(crate) const IDENTIFIERS_NEARLY_COMPARED: Fault = Fault {
     breaks: "CiA 301: PDO COB-ID, bits 0 to 10",
     words: "takes an RPDO whose identifier differs from its own in the lowest two bits",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.identifiers_compared = false,
 };
 
@@ -421,7 +375,6 @@ pub(crate) const DEFAULT_MAPPING_WRONG: Fault = Fault {
     breaks: "CiA 301: PDO mapping parameter, length of the object",
     words: "maps the first object of TPDO1 and RPDO1 by default with twice its length",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.default_mapping_right = false,
 };
 
@@ -430,7 +383,6 @@ pub(crate) const PDO_SUB_INDICES_WRONG: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, sub-index 0",
     words: "gives 32 for the highest sub-index of a PDO communication parameter, as if it were a length in bits",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.sub_indices_right = false,
 };
 
@@ -439,7 +391,6 @@ pub(crate) const START_VALUE_WITHOUT_COUNTER: Fault = Fault {
     breaks: "CiA 301: PDO communication parameter, SYNC start value without a counter",
     words: "waits for the SYNC with its start value though SYNC has no counter",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.start_value_needs_counter = false,
 };
 
@@ -448,7 +399,6 @@ pub(crate) const BITS_NOT_PACKED: Fault = Fault {
     breaks: "CiA 301: PDO mapping, transfer syntax of bit sequences",
     words: "gives a BOOLEAN in a PDO a whole byte",
     caught_by: "pdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.pdo.bits_packed = false,
 };
 

@@ -7,7 +7,6 @@ pub(crate) const STOPS_AT_UNKNOWN_COMMAND: Fault = Fault {
     breaks: "CiA 301: SDO protocol, command specifiers",
     words: "takes nothing more after an SDO request with a command specifier that there is none of",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.stops_at_unknown_command = true,
 };
 
@@ -16,7 +15,6 @@ pub(crate) const STOPS_AT_REMOTE_REQUEST: Fault = Fault {
     breaks: "CiA 301: SDO requests are data frames",
     words: "takes nothing more after a remote frame on the identifier of its SDO requests",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.stops_at_remote_request = true,
 };
 
@@ -25,7 +23,6 @@ pub(crate) const STOPS_AT_EMPTY_REQUEST: Fault = Fault {
     breaks: "CiA 301: SDO requests have eight bytes",
     words: "takes nothing more after an SDO request without data",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.stops_at_empty_request = true,
 };
 
@@ -34,7 +31,6 @@ pub(crate) const STOPS_AT_REMOTE_NMT: Fault = Fault {
     breaks: "CiA 301: NMT messages are data frames",
     words: "takes nothing more after a remote frame with identifier 000h",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.stops_at_remote_nmt = true,
 };
 
@@ -43,7 +39,6 @@ pub(crate) const STOPS_AT_BURST: Fault = Fault {
     breaks: "CiA 301: COB-IDs of others are not received",
     words: "takes nothing more after a burst of 65 frames",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.stops_at_burst = true,
 };
 
@@ -52,7 +47,6 @@ pub(crate) const STOPS_AFTER_127_STRANGE_FRAMES: Fault = Fault {
     breaks: "CiA 301: COB-IDs of others are not received",
     words: "takes nothing more after 127 frames that were for nobody",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.leaks = true,
 };
 
@@ -61,7 +55,6 @@ pub(crate) const EXTENDED_TAKEN_AS_STANDARD: Fault = Fault {
     breaks: "CiA 301: identifiers of 11 and of 29 bits are apart",
     words: "takes an extended frame for the standard one with the low 11 bits of its identifier",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.extended_taken_as_standard = true,
 };
 
@@ -70,7 +63,6 @@ pub(crate) const NMT_WITHOUT_NODE_OBEYED: Fault = Fault {
     breaks: "CiA 301: NMT messages have two bytes",
     words: "obeys an NMT command of one byte as one to all nodes",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.nmt_without_node_obeyed = true,
 };
 
@@ -79,7 +71,6 @@ pub(crate) const LONG_SYNC_RESETS: Fault = Fault {
     breaks: "CiA 301: SYNC has no data, or a counter",
     words: "resets when a SYNC has more than one byte",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.long_sync_resets = true,
 };
 
@@ -88,7 +79,6 @@ pub(crate) const SHORT_TIME_RESETS: Fault = Fault {
     breaks: "CiA 301: TIME has six bytes",
     words: "resets when a TIME has fewer than six bytes",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.short_time_resets = true,
 };
 
@@ -97,7 +87,6 @@ pub(crate) const EMPTY_PDO_RESETS: Fault = Fault {
     breaks: "CiA 301: a PDO that is too short is not processed",
     words: "resets when an RPDO has no data",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.empty_pdo_resets = true,
 };
 
@@ -106,7 +95,6 @@ pub(crate) const FOREIGN_HEARTBEAT_ENDS_OWN: Fault = Fault {
     breaks: "CiA 301: heartbeat producer",
     words: "sends no heartbeat any more after one of another node that is not one byte",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.foreign_heartbeat_ends_own = true,
 };
 
@@ -115,7 +103,6 @@ pub(crate) const UNKNOWN_IDENTIFIER_REPORTED: Fault = Fault {
     breaks: "CiA 301: COB-IDs of others are not received",
     words: "sends an EMCY when a frame comes that is for nobody",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.unknown_identifier_reported = true,
 };
 
@@ -124,7 +111,6 @@ pub(crate) const SDO_FILTER_OF_SIX_BITS: Fault = Fault {
     breaks: "CiA 301: predefined connection set, node-ID of seven bits",
     words: "answers SDO requests to the node whose node-ID differs by 64",
     caught_by: "robustness",
-    named: &[],
     apply: |behaviour| behaviour.canopen.robustness.sdo_filter_of_six_bits = true,
 };
 

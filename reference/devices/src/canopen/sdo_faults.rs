@@ -17,7 +17,6 @@ const fn fault(
         breaks,
         words,
         caught_by: "sdo",
-        named: &[],
         apply,
     }
 }

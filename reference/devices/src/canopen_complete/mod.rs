@@ -49,7 +49,6 @@ const OWN_FAULTS: &[Fault] = &[
         breaks: "CiA 301: sub-index FFh, object code and data type",
         words: "sub-index FFh of the array 2203h names another type than its elements have",
         caught_by: "sdo",
-        named: &[],
         apply: |behaviour| {
             let fault = ObjectFault::new(ObjectFaultKind::WrongDefault, 0x2203, 0xFF);
             behaviour.canopen.object_fault = Some(fault);

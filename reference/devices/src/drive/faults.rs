@@ -16,7 +16,6 @@ const fn fault(
         breaks,
         words,
         caught_by: "cia402",
-        named: &[],
         apply,
     }
 }

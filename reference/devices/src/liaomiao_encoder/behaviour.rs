@@ -80,7 +80,6 @@ const SPEED_SIGN_LOST: Fault = Fault {
     breaks: "Liaomiao encoder manual, object 2000h: the speed is signed",
     words: "shows the magnitude of the speed in 2000h and in both TPDOs",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.speed_sign = SpeedSign::Lost,
 };
 
@@ -89,7 +88,6 @@ const SPEED_CLIPPED: Fault = Fault {
     breaks: "Liaomiao encoder manual, object 2000h: 32 bits, and shaft speeds of 6000 rpm and more",
     words: "shows 3276.7 rpm for every higher speed, as one that was kept in 16 bits",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.highest_speed = 32_767_000,
 };
 
@@ -98,7 +96,6 @@ const DIRECTION_OF_COUNT_FIXED: Fault = Fault {
     breaks: "CiA 406: object 6000h, code sequence",
     words: "turns the sign of the speed with bit 0 of 6000h, and goes on counting the position as before",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.direction_turns_count = false,
 };
 
@@ -107,7 +104,6 @@ const PRESET_WITHOUT_EFFECT: Fault = Fault {
     breaks: "CiA 406: object 6003h, the position is set to the preset value",
     words: "keeps what is written to 6003h and leaves the position as it is",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.preset = PresetEffect::None,
 };
 
@@ -116,7 +112,6 @@ const PRESET_ADDED: Fault = Fault {
     breaks: "CiA 406: object 6003h, the position is set to the preset value",
     words: "adds the preset value to the position, as if it were an offset",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.preset = PresetEffect::Adds,
 };
 
@@ -125,7 +120,6 @@ const PRESET_ONLY_ONCE: Fault = Fault {
     breaks: "CiA 406: object 6003h, the position is set to the preset value",
     words: "does nothing when the preset value that it has already is written again",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.preset = PresetEffect::SetsOnce,
 };
 
@@ -134,7 +128,6 @@ const PRESET_MIRRORED: Fault = Fault {
     breaks: "CiA 406: object 6003h, the position is set to the preset value",
     words: "takes a preset for a position in the other direction while that is turned",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.preset = PresetEffect::SetsMirrored,
 };
 
@@ -143,7 +136,6 @@ const PRESET_LOST_AT_RESET: Fault = Fault {
     breaks: "Liaomiao encoder manual, section 5: 6003h is saved by itself",
     words: "still reads 6003h after a reset, and shows the position as it was without the preset",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.preset_kept = false,
 };
 
@@ -152,7 +144,6 @@ const TURNS_NOT_COUNTED: Fault = Fault {
     breaks: "Liaomiao encoder manual, object 1000h: an encoder of several turns",
     words: "shows the angle within the turn and never counts a turn",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.turns_counted = false,
 };
 
@@ -161,7 +152,6 @@ const POSITION_STOPS_AT_THE_END: Fault = Fault {
     breaks: "CiA 406: object 6002h, the position is counted within the total measuring range",
     words: "stays at its highest or lowest position when the shaft turns on",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.position_wraps = false,
 };
 
@@ -170,7 +160,6 @@ const TURNS_UNPOWERED_MISSED: Fault = Fault {
     breaks: "Liaomiao encoder manual: an absolute encoder",
     words: "has after power-on the position from before, wherever the shaft has turned to",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.turns_unpowered_counted = false,
 };
 
@@ -179,7 +168,6 @@ const RESOLUTION_WITHOUT_EFFECT: Fault = Fault {
     breaks: "Liaomiao encoder manual, object 2003h: bits within a turn",
     words: "keeps what is written to 2003h and goes on counting 65536 to the turn",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.resolution_obeyed = false,
 };
 
@@ -188,7 +176,6 @@ const OPERATING_STATUS_FROZEN: Fault = Fault {
     breaks: "CiA 406: object 6500h shows what 6000h has set",
     words: "reads 0 in 6500h whatever was written to 6000h",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.status_follows = false,
 };
 
@@ -197,7 +184,6 @@ const CYCLIC_TIMER_WITHOUT_EFFECT: Fault = Fault {
     breaks: "CiA 406: object 6200h is the event timer of TPDO1",
     words: "keeps 6200h and 1800h:05 apart, and sends TPDO1 by the latter alone",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.cyclic_timer_is_event_timer = false,
 };
 
@@ -206,7 +192,6 @@ const SETTINGS_FORGOTTEN: Fault = Fault {
     breaks: "Liaomiao encoder manual, section 5: what is saved when it is written",
     words: "has its default settings again after every reset",
     caught_by: "cia406",
-    named: &[],
     apply: |behaviour| behaviour.encoder.settings_saved = false,
 };
 
@@ -215,7 +200,6 @@ const LIMITS_NOT_CHECKED: Fault = Fault {
     breaks: "CiA 301: SDO abort codes 06090030h to 06090032h, a value out of range",
     words: "takes and keeps a value that is beyond the range of its object",
     caught_by: "sdo",
-    named: &[],
     apply: |behaviour| behaviour.canopen.limits_checked = false,
 };
 

@@ -107,7 +107,6 @@ const IDENTITY_OF_THE_TEMPLATE: Fault = Fault {
     breaks: "CiA 301: object 1018h, the vendor-ID is the one CiA gave; Liaomiao encoder manual, section 6",
     words: "has left in 1018h what a template had: vendor 0, product 0, revision 1, serial number 1",
     caught_by: "lss",
-    named: &[],
     apply: |behaviour| behaviour.canopen.identity = Some([0, 0, 1, 1]),
 };
 

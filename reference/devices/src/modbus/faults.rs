@@ -12,7 +12,6 @@ pub const CRC_BYTES_SWAPPED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.5.1.2: the CRC is sent low byte first",
     words: "sends the CRC of its answers high byte first",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.crc_order = CrcOrder::HighByteFirst,
 };
 
@@ -22,7 +21,6 @@ pub const STALE_CRC_ACCEPTED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.5.1.2: a frame with a wrong CRC is discarded",
     words: "does what a request asks, and answers it, though its CRC is wrong",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.stale_crc_accepted = true,
 };
 
@@ -32,7 +30,6 @@ pub const EXCEPTION_WITHOUT_80H: Fault = Fault {
     breaks: "MODBUS application protocol V1.1b3, 7: an exception answer sets bit 7 of the function code",
     words: "answers an exception with the plain function code",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.exception_bit_set = false,
 };
 
@@ -42,7 +39,6 @@ pub const EXCEPTION_03_FOR_02: Fault = Fault {
     breaks: "MODBUS application protocol V1.1b3, 7: the exception code says why",
     words: "answers exception 03 where 02 is due",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| {
         let codes = &mut behaviour.modbus.exception_codes;
         for code in [
@@ -64,7 +60,6 @@ pub const REPLY_TOO_EARLY: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.5.1.1: frames are separated by at least 3.5 characters of silence",
     words: "begins its answer about 2.5 characters after the request",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.replies_before_silence = true,
 };
 
@@ -74,7 +69,6 @@ pub const BROADCAST_ANSWERED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.1: a broadcast is not answered",
     words: "answers a request to address 0",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.broadcast_answered = true,
 };
 
@@ -84,7 +78,6 @@ pub const OTHER_ADDRESS_ANSWERED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.2: only the slave that is addressed answers",
     words: "does and answers, from its own address, what another slave is asked",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.other_addresses_answered = true,
 };
 
@@ -94,7 +87,6 @@ pub const BARE_ADDRESS_ANSWERED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.5.1: a frame has an address, a function code, data and a CRC",
     words: "answers a frame that has an address and a CRC, but no function code",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.bare_address_answered = true,
 };
 
@@ -104,7 +96,6 @@ pub const WRONG_BYTE_COUNT: Fault = Fault {
     breaks: "MODBUS application protocol V1.1b3, 6.3: the byte count is twice the number of registers",
     words: "counts registers, not bytes, in the answer to 03h",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.byte_count = ByteCount::Registers,
 };
 
@@ -114,7 +105,6 @@ pub const WRITE_ECHO_WRONG_VALUE: Fault = Fault {
     breaks: "MODBUS application protocol V1.1b3, 6.6: the answer to 06h is the request",
     words: "writes the value, but names the next higher one in its answer",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.echoed_value = EchoedValue::OneMore,
 };
 
@@ -125,7 +115,6 @@ pub const WRITE_MULTIPLE_FORGETS: Fault = Fault {
     breaks: "MODBUS application protocol V1.1b3, 6.12: 10h writes a block of contiguous registers",
     words: "writes the first of several registers and confirms them all",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.most_written = 1,
 };
 
@@ -135,7 +124,6 @@ pub const ADDRESS_CHANGE_NOT_ANSWERED: Fault = Fault {
     breaks: "Liaomiao encoder manual, Modbus-RTU operation 3: the change is answered",
     words: "takes the new address and stays silent",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.address_change_reply = AddressChangeReply::None,
 };
 
@@ -145,7 +133,6 @@ pub const ADDRESS_CHANGE_ANSWERED_FROM_OLD: Fault = Fault {
     breaks: "Liaomiao encoder manual, Modbus-RTU operation 3: the answer comes from the new address",
     words: "takes the new address, but answers from the one it had",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.address_change_reply = AddressChangeReply::FromOld,
 };
 
@@ -154,7 +141,6 @@ pub const ADDRESS_TEXT_IGNORED: Fault = Fault {
     name: "address-text-ignored",
     breaks: "Liaomiao encoder manual, Modbus-RTU operation 3: the text `addr:` stands before the new address",
     words: "takes a new address whatever text stands before it",
-    named: &[],
     caught_by: "modbus",
     apply: |behaviour| behaviour.modbus.departure = Some(Departure::AddressTextIgnored),
 };
@@ -165,7 +151,6 @@ pub const SPEED_SIGN_LOST: Fault = Fault {
     breaks: "Liaomiao encoder manual, Modbus-RTU operations 6, 15 and 16: the speed is signed",
     words: "shows the magnitude of the speed in registers 0004h, 000Ch and 000Dh",
     caught_by: "modbus",
-    named: &[],
     apply: |behaviour| behaviour.modbus.speed_sign = SpeedSign::Lost,
 };
 

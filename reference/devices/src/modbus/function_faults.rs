@@ -14,7 +14,6 @@ macro_rules! faults {
             breaks: $breaks,
             words: $words,
             caught_by: "modbus",
-            named: &[],
             apply: |behaviour| behaviour.modbus.$field = $value,
         }),+];)+
     };

@@ -11,7 +11,6 @@ macro_rules! tcp_faults {
             name: $name,
             breaks: $breaks,
             words: $words,
-            named: &[],
             caught_by: "modbus",
             apply: |behaviour| behaviour.modbus.tcp_fault = Some(TcpFault::$fault),
         }),+];

@@ -120,7 +120,6 @@ pub(super) const SWAPS_TWO_REGISTERS: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.7: sub-index of 2025h is the member of group 25 plus one",
     words: "reads the output frequency (2524h) for the frequency command (2523h), and the other way round",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.swapped_registers = Some([0x2523, 0x2524]),
 };
 
@@ -129,7 +128,6 @@ pub(super) const DIRECTION_LOST: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: bit 15 of 6042h is the direction",
     words: "runs forward whatever bit 15 of 6042h says",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.direction_passed_on = false,
 };
 
@@ -138,7 +136,6 @@ pub(super) const FAULT_RESET_LOST: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: bit 7 of 6040h clears faults",
     words: "does not tell the inverter to clear its fault",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.fault_reset_passed_on = false,
 };
 
@@ -147,7 +144,6 @@ pub(super) const FREQUENCY_HALVED: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: 6042h counts 0.02 Hz",
     words: "writes 6042h to 2502h as it is, so the motor turns at half the speed",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.counts_per_target = 1,
 };
 
@@ -156,7 +152,6 @@ pub(super) const FREQUENCY_IN_15_BITS: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: 6042h goes up to 400 Hz",
     words: "doubles 6042h within 15 bits, so that from 327.68 Hz on the frequency begins again at 0",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.frequency_mask = 0x7FFF,
 };
 
@@ -165,7 +160,6 @@ pub(super) const CONFIRMS_EARLY: Fault = Fault {
     breaks: "CiA 301: SDO download, confirmed when it is done",
     words: "confirms a download before the inverter was asked",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.waits_for_inverter = false,
 };
 
@@ -174,7 +168,6 @@ pub(super) const REFUSAL_HIDDEN: Fault = Fault {
     breaks: "CiA 301: SDO abort transfer",
     words: "confirms a download that the inverter refused or did not answer",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.refusals_passed_on = false,
 };
 
@@ -183,7 +176,6 @@ pub(super) const TARGET_AS_INTEGER16: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: bit 15 of 6042h is the direction, bits 14 to 0 the frequency",
     words: "reads 6042h as CiA 402 has it, in two's complement",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.target_sign = TargetSign::TwosComplement,
 };
 
@@ -192,7 +184,6 @@ pub(super) const DIRECTION_STOPS: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: bit 15 of 6042h is the direction and nothing else",
     words: "clears the run bit of 2501h when the direction changes",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.direction_keeps_run = false,
 };
 
@@ -201,7 +192,6 @@ pub(super) const FAULT_RESET_BY_ANY_WRITE: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: bit 7 of 6040h clears faults, 0 does nothing",
     words: "clears the fault of the inverter with every write to 6040h",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.fault_reset_on_bit_7_only = false,
 };
 
@@ -210,7 +200,6 @@ pub(super) const PDO_NOT_PASSED_ON: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 1: RPDOs carry what can be written",
     words: "keeps what an RPDO sets and does not tell the inverter",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.pdo_passed_on = false,
 };
 
@@ -219,7 +208,6 @@ pub(super) const NOT_POLLED: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 1: TPDOs carry what can be read",
     words: "sends in TPDO2 what was last read over SDO",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.polls = false,
 };
 
@@ -228,7 +216,6 @@ pub(super) const RUN_STATE_OF_COMMAND: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: 6041h is the state of the inverter",
     words: "shows in 6041h that the inverter was told to run, not that it runs",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.run_state = RunState::OfCommand,
 };
 
@@ -237,7 +224,6 @@ pub(super) const RUN_STATE_FROZEN: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: 6041h is the state of the inverter",
     words: "reads 0 in 6041h whether the inverter runs or not",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.run_state = RunState::Frozen,
 };
 
@@ -246,7 +232,6 @@ pub(super) const DEMAND_NOT_HALVED: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.6: 6043h counts 0.02 Hz",
     words: "shows in 6043h what 2523h holds, so twice the frequency",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.counts_per_demand = 1,
 };
 
@@ -255,7 +240,6 @@ pub(super) const WRITES_ONE_FURTHER: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.7: sub-index of 2025h is the member of group 25 plus one",
     words: "reads the register of a sub-index and writes the one after it",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.first_written = 1,
 };
 
@@ -264,7 +248,6 @@ pub(super) const BYTE_ORDER: Fault = Fault {
     breaks: "CiA 301: numbers are transmitted least significant byte first",
     words: "passes a register through 2025h with its bytes as Modbus has them",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.bytes_in_order = false,
 };
 
@@ -273,7 +256,6 @@ pub(super) const LOST_INVERTER_READS_ZERO: Fault = Fault {
     breaks: "CiA 301: SDO abort transfer",
     words: "answers 0 for a register when the inverter does not answer",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.lost = Lost::Zero,
 };
 
@@ -282,7 +264,6 @@ pub(super) const LOST_INVERTER_HANGS: Fault = Fault {
     breaks: "CiA 301: SDO upload, confirmed service",
     words: "does not answer an upload at all when the inverter does not answer",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.lost = Lost::Hangs,
 };
 
@@ -291,7 +272,6 @@ pub(super) const LOST_FOR_GOOD: Fault = Fault {
     breaks: "TECO JN5-CM-CAN manual 4.7: an access to 2025h is an access to the inverter",
     words: "refuses everything that concerns the inverter once that has not answered, until it is reset",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.asks_again = false,
 };
 
@@ -300,7 +280,6 @@ pub(super) const CRC_UNCHECKED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.5.1.2: a frame with a wrong CRC is discarded",
     words: "takes an answer of the inverter whose CRC is wrong",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.answers = Answers::CrcUnchecked,
 };
 
@@ -309,7 +288,6 @@ pub(super) const STATION_UNCHECKED: Fault = Fault {
     breaks: "MODBUS over serial line V1.02, 2.2: the address field of an answer says which slave it is from",
     words: "takes the answer of another station for that of the inverter",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.answers = Answers::StationUnchecked,
 };
 
@@ -318,7 +296,6 @@ pub(super) const EXCEPTION_AS_VALUE: Fault = Fault {
     breaks: "MODBUS application protocol V1.1b3, 7: an exception is no value",
     words: "gives the exception code of the inverter as the value of the register",
     caught_by: "gateway",
-    named: &[],
     apply: |behaviour| behaviour.gateway.exceptions_told = false,
 };
 

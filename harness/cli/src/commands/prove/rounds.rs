@@ -58,7 +58,11 @@ impl Claim {
         Claim {
             breaks: fault.breaks,
             caught_by: fault.caught_by,
-            named: fault.named.iter().map(|word| (*word).to_owned()).collect(),
+            named: fault
+                .named()
+                .iter()
+                .map(|word| (*word).to_owned())
+                .collect(),
         }
     }
 
