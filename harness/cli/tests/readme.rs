@@ -84,17 +84,6 @@ fn run_of_the_readme_is_what_one_sees() {
 }
 
 #[test]
-fn readme_counts_every_fault() {
-    let kinds = fieldproof_devices::kinds();
-    let count: usize = kinds.iter().map(|kind| kind.faults().count()).sum();
-    let right = format!("{count} of {count} faults are caught");
-    if !README.contains(&right) {
-        let shown = README.lines().find(|line| shape(line) == shape(&right));
-        put_right(shown.unwrap(), Some(&right), &right);
-    }
-}
-
-#[test]
 fn failing_case_of_the_readme_is_what_one_sees() {
     let blocks = blocks("console");
     let shown = blocks
