@@ -84,7 +84,7 @@ mod tests {
             let milliseconds = now.as_nanos() / 1_000_000;
             sent.extend(out.drain().map(|(_, what)| match what {
                 Transmission::Frame(frame) => format!("{milliseconds} {frame}"),
-                Transmission::Characters(_) => unreachable!(),
+                other => unreachable!("{other:?} on CAN"),
             }));
         }
         let others: Vec<&String> = sent.iter().filter(|it| !it.contains("1DC#")).collect();
