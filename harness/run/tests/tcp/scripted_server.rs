@@ -56,12 +56,18 @@ fn against(
     played
 }
 
+/// A failure says what is wrong, and behind a colon with which request and answer.
 fn verdicts(played: &Played) -> Vec<(Verdict, &str)> {
     let cases = played.cases().into_iter();
     cases
         .map(|case| {
             let first = case.failures.first();
-            (case.verdict, first.map_or("", |failure| &failure.what))
+            let what = first.map_or("", |failure| &failure.what);
+            let wrong = match case.verdict {
+                Verdict::Fail => what.split(": ").next().unwrap_or(what),
+                _ => what,
+            };
+            (case.verdict, wrong)
         })
         .collect()
 }
@@ -122,6 +128,11 @@ fn a_failure_shows_the_transaction_that_went_wrong() {
         answer[10] = 0;
         Some(answer)
     });
+    assert_eq!(
+        played.cases()[0].failures[0].what,
+        "the registers hold something else: transaction 0001h: read 1 holding register from 0001h; \
+         transaction 0001h: 1 register: 0F00h"
+    );
     let excerpt = &played.cases()[0].excerpt;
     let words: Vec<&str> = excerpt.iter().map(|line| line.decoded.as_str()).collect();
     let expected = [
