@@ -15,7 +15,6 @@ mod journal;
 mod library;
 mod line_trouble;
 mod links;
-mod object_faults;
 mod operator;
 mod options;
 mod player;
@@ -26,6 +25,7 @@ mod screen;
 mod select;
 mod stimulus_words;
 mod stop;
+mod value_faults;
 mod waivers;
 
 pub use bench::{Behaviour, NotConnected};

@@ -329,7 +329,10 @@ fn interrupted_run_writes_what_it_has() {
     let report = Report::deserialize_from_str(&folder.read("reports/junit.xml")).unwrap();
     // One more says that it did not come to its end.
     assert_eq!(report.tests as u64, u64::from(end.counts.total()) + 1);
-    assert_eq!(report.errors, 1);
+    // A case that was being played is broken off, and undecided.
+    let broken_off = u64::from(end.counts.inconclusive);
+    assert_eq!(report.errors as u64, broken_off + 1);
+    assert!(broken_off <= 1);
     assert!(report.tests < 50_000);
     let tap = folder.read("reports/report.tap");
     assert!(tap.contains("Bail out! kinco-servo was stopped"), "{tap}");

@@ -35,7 +35,7 @@ pub fn fill(suite: &Suite, device: &DeviceDescription, known: Known<'_>) -> Suit
 
 /// As [`fill`], with at most `most` rows of every table that is filled, spread over all there are.
 pub fn fill_some(suite: &Suite, device: &DeviceDescription, known: Known<'_>, most: u16) -> Suite {
-    suite.filled(&|query| spread(find(query, device, known), Some(most)))
+    suite.filled(&|query| spread(find(query, device, known), most.into()))
 }
 
 /// Everything that is as `query` says, in the order of the dictionary or of the addresses.
@@ -55,25 +55,23 @@ fn find(query: &Query, device: &DeviceDescription, known: Known<'_>) -> Vec<Colu
             .as_ref()
             .map(|it| function::functions(query, it)),
     };
-    spread(found.unwrap_or_default(), query.at_most)
+    let most = query.at_most.map_or(usize::MAX, usize::from);
+    spread(found.unwrap_or_default(), most)
 }
 
-/// As many of `all` as asked for, at even distances, the first and the last among them.
-fn spread(all: Vec<Columns>, at_most: Option<u16>) -> Vec<Columns> {
-    let most = at_most.map_or(usize::MAX, usize::from);
+/// At most `most` of `all`, at even distances, the first and the last among them.
+pub fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
     let last = all.len().saturating_sub(1);
     if all.len() <= most {
         return all;
     }
     let steps = most.saturating_sub(1).max(1);
-    let is_taken = |index: &usize| {
-        // The multiple of last/steps that is nearest below.
-        (0..most).any(|step| step * last / steps == *index)
-    };
+    // Each is the multiple of last/steps that is nearest below, so they are in order.
+    let taken: Vec<usize> = (0..most).map(|step| step * last / steps).collect();
     all.into_iter()
         .enumerate()
-        .filter(|(index, _)| is_taken(index))
-        .map(|(_, columns)| columns)
+        .filter(|(index, _)| taken.binary_search(index).is_ok())
+        .map(|(_, one)| one)
         .collect()
 }
 

@@ -36,5 +36,5 @@ mod value;
 mod words;
 
 pub use applies::{Bench, effect_name, feature_name, skip_reason};
-pub use find::{Known, fill, fill_some};
+pub use find::{Known, fill, fill_some, spread};
 pub use lane::{LaneJob, LaneOutcome, play_lane, suites_for};

@@ -22,7 +22,7 @@ use crate::options::{EFFECTS, Format, RunOptions};
 use crate::player::Plan;
 use crate::progress::Progress;
 use crate::screen::{INK, Screen};
-use crate::{object_faults, reports, select, stop};
+use crate::{reports, select, stop, value_faults};
 use lanes::Stage;
 
 /// Plays suites against devices. Nothing is written before everything that can be wrong with the input is known.
@@ -191,7 +191,7 @@ fn devices<'l>(library: &'l Library, plan: &Plan) -> Result<Vec<&'l Device>, Com
     };
     let mut devices: Vec<&Device> = library.devices.iter().collect();
     if let Some(name) = &plan.behaviour.fault {
-        let with_object = |device: &&&Device| object_faults::of(device, name).is_some();
+        let with_object = |device: &&&Device| value_faults::of(device, name).is_some();
         let with: Vec<&Device> = devices.iter().filter(with_object).copied().collect();
         devices = match with.is_empty() {
             true => having("fault", name, devices, faults)?,

@@ -16,26 +16,36 @@ fn tables<'a>(
 }
 
 pub(super) fn registers(query: &Query, map: &RegisterMap) -> Vec<Columns> {
+    let length = usize::from(query.row.unwrap_or(1));
     let mut found = Vec::new();
     for (table, values) in tables(query, map) {
-        let matching = values.registers().filter(|it| is_so(query, it));
-        found.extend(
-            matching
-                .filter_map(|first| row(query, values, first).map(|last| (first, last)))
-                .map(|(first, last)| columns(table, first, last)),
-        );
+        let matching: Vec<&Register> = values.registers().filter(|it| is_so(query, it)).collect();
+        let rows = rows(&matching, length);
+        found.extend(rows.map(|(first, last)| columns(table, first, last)));
     }
     found
 }
 
-/// The last of the row that begins with `first`.
-fn row<'a>(query: &Query, table: &'a RegisterTable, first: &'a Register) -> Option<&'a Register> {
-    let mut last = first;
-    for _ in 1..query.row.unwrap_or(1) {
-        let next = last.addresses().end().checked_add(1)?;
-        last = table.register(next).filter(|it| is_so(query, it))?;
-    }
-    Some(last)
+/// The first and the last of every `length` registers of `matching` that follow each other without a gap.
+fn rows<'r>(
+    matching: &[&'r Register],
+    length: usize,
+) -> impl Iterator<Item = (&'r Register, &'r Register)> {
+    // How many follow each other up to each of them, itself counted.
+    let mut run = 0;
+    let mut before: Option<&Register> = None;
+    let runs = matching.iter().enumerate().map(move |(place, register)| {
+        let follows =
+            before.is_some_and(|it| it.addresses().end().checked_add(1) == Some(register.address));
+        run = if follows { run + 1 } else { 1 };
+        before = Some(register);
+        (place, run)
+    });
+    runs.filter(move |(_, run)| *run >= length)
+        .filter_map(move |(last, _)| {
+            let first = (last + 1).checked_sub(length)?;
+            Some((*matching.get(first)?, *matching.get(last)?))
+        })
 }
 
 /// The addresses that are said to be refused, with their table.

@@ -287,7 +287,7 @@ fn the_gaps_are_between_and_beside() {
 fn a_few_are_spread_over_all() {
     let all: Vec<Columns> = (0..10).map(|it: u8| vec![("", it.to_string())]).collect();
     let of = |most| {
-        let taken = spread(all.clone(), Some(most));
+        let taken = spread(all.clone(), most);
         taken
             .iter()
             .map(|columns| columns[0].1.clone())

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fieldproof_can::{Frame, Id, Pattern};
+use fieldproof_can::{Frame, Id, MaskedByte, Pattern};
 use fieldproof_link::{Instant, Origin, PortIndex};
 use fieldproof_suite::model::{Alternative, Expect, ExpectSilence, Send};
 use fieldproof_suite::scalar::Tolerance;
@@ -286,22 +286,14 @@ fn name_of(pattern: &Pattern) -> String {
     let Some(service) = service else {
         return format!("frame {id}");
     };
-    let exact: Vec<u8> = pattern
-        .bytes()
-        .iter()
-        .take_while(|byte| byte.mask() == 0xFF || service == Service::SdoResponse)
-        .map(|byte| byte.value())
-        .collect();
-    let names_object = pattern
-        .bytes()
-        .get(1..4)
-        .is_some_and(|bytes| bytes.iter().all(|byte| byte.mask() == 0xFF));
-    match (service, exact.as_slice()) {
-        (Service::SdoResponse, [_, low, high, sub, ..]) if names_object => {
+    let exact = |byte: &MaskedByte| (byte.mask() == 0xFF).then_some(byte.value());
+    let bytes: Vec<Option<u8>> = pattern.bytes().iter().map(exact).collect();
+    match (service, bytes.as_slice()) {
+        (Service::SdoResponse, [_, Some(low), Some(high), Some(sub), ..]) => {
             let index = u16::from_le_bytes([*low, *high]);
             format!("{service} for {index:04X}h:{sub:02X} ({id})")
         }
-        (Service::ErrorControl, [0]) => format!("boot-up message ({id})"),
+        (Service::ErrorControl, [Some(0)]) => format!("boot-up message ({id})"),
         _ => format!("{service} ({id})"),
     }
 }

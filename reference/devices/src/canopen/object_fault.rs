@@ -140,23 +140,28 @@ impl ObjectFault {
                 let bounded = entry
                     .high_limit
                     .is_some_and(|high| high.value(1) < highest(entry));
-                bounded && access.writable() && self.is_plain()
+                bounded && access.writable() && self.is_plain() && !self.has_own_limits()
             }
             ObjectFaultKind::TooLow => {
                 let bounded = entry
                     .low_limit
                     .is_some_and(|low| low.value(1) > lowest(entry));
-                bounded && access.writable() && self.is_plain()
+                bounded && access.writable() && self.is_plain() && !self.has_own_limits()
             }
         }
+    }
+
+    /// Whether the application checks what is written by itself, so that the dictionary's limits make no difference: the
+    /// encoder's node-ID and bit rate, the registers behind the gateway.
+    const fn has_own_limits(self) -> bool {
+        matches!(self.address.index(), 0x2025 | 0x3000 | 0x3001)
     }
 
     /// Whether nothing but its type and limits says what may be written: no service has rules of its own for it.
     const fn is_plain(self) -> bool {
         !matches!(
             self.address.index(),
-            0x1003 | 0x1010 | 0x1011 | 0x1019 | 0x1020 | 0x1200
-                ..=0x1BFF | 0x2025 | 0x3000 | 0x3001 | 0x6081 | 0x60FF
+            0x1003 | 0x1010 | 0x1011 | 0x1019 | 0x1020 | 0x1200..=0x1BFF
         )
     }
 }

@@ -10,10 +10,10 @@ use crate::bench::Behaviour;
 use crate::complaint::Complaint;
 use crate::library::{Device, Library};
 use crate::line_trouble::{Must, TROUBLES};
-use crate::object_faults::ValueFault;
 use crate::options::ProveOptions;
 use crate::player::Plan;
-use crate::{object_faults, select};
+use crate::value_faults::ValueFault;
+use crate::{select, value_faults};
 
 /// What a device is made to be.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -70,7 +70,7 @@ impl Claim {
         let text = fault.to_string();
         let address = text.split(':').nth(1).unwrap_or_default();
         let caught_by = match fault {
-            ValueFault::Object(_) => "dictionary",
+            ValueFault::Object(_) => "sdo",
             ValueFault::Register(_) => "registers",
         };
         Claim {
@@ -135,11 +135,11 @@ fn rounds_of(device: &Device, library: &Library, options: &ProveOptions) -> Vec<
     let named = device.faults().filter(|fault| asked(fault.name));
     let named = named.map(|fault| (&sampled, fault.name.to_owned(), Claim::of(fault)));
     let of_objects = match options.faults.is_empty() {
-        true => object_faults::some(device),
+        true => value_faults::some(device),
         false => {
             let asked = options.faults.iter();
             asked
-                .filter_map(|name| object_faults::of(device, name))
+                .filter_map(|name| value_faults::of(device, name))
                 .collect()
         }
     };
@@ -183,7 +183,7 @@ fn faults_must_be_known(devices: &[&Device], asked: &[String]) -> Result<(), Com
         .flat_map(|device| device.faults().map(|it| it.name))
         .collect();
     let is_known = |name: &&String| {
-        let of_object = |device: &&Device| object_faults::of(device, name).is_some();
+        let of_object = |device: &&Device| value_faults::of(device, name).is_some();
         known.contains(name.as_str()) || devices.iter().any(of_object)
     };
     match asked.iter().find(|name| !is_known(name)) {

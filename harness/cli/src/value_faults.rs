@@ -10,6 +10,7 @@ use fieldproof_dictionary::registers::{RegisterMap, Table};
 use fieldproof_suite::device::Feature;
 
 use crate::library::Device;
+use fieldproof_run::spread;
 
 /// How many values are given each kind of fault where none is asked for.
 const OF_EACH_KIND: usize = 3;
@@ -93,7 +94,7 @@ fn of_objects(dictionary: &Dictionary) -> Vec<ObjectFault> {
                 .filter(|fault| fault.fits(dictionary))
                 .collect(),
         };
-        spread(&all)
+        spread(all, OF_EACH_KIND)
     };
     ObjectFaultKind::ALL.into_iter().flat_map(of_kind).collect()
 }
@@ -108,10 +109,8 @@ fn of_registers(device: &Device, map: &RegisterMap) -> Vec<RegisterFault> {
         let all = addresses
             .iter()
             .map(|address| RegisterFault::new(kind, *address));
-        spread(
-            &all.filter(|fault| can_show(device, *fault))
-                .collect::<Vec<_>>(),
-        )
+        let all = all.filter(|fault| can_show(device, *fault)).collect();
+        spread(all, OF_EACH_KIND)
     };
     let kinds = RegisterFaultKind::ALL.into_iter();
     kinds.flat_map(of_kind).collect()
@@ -140,17 +139,6 @@ fn surplus(dictionary: &Dictionary) -> Vec<ObjectFault> {
     let sub = record.and_then(|it| Some((it.index, it.entries.keys().last()?.checked_add(1)?)));
     let sub = sub.map(|(index, sub)| ObjectFault::new(ObjectFaultKind::Surplus, index, sub));
     index.into_iter().chain(sub).collect()
-}
-
-fn spread<Fault: Copy>(all: &[Fault]) -> Vec<Fault> {
-    let steps = OF_EACH_KIND - 1;
-    let last = all.len().saturating_sub(1);
-    let mut places: Vec<usize> = (0..OF_EACH_KIND).map(|step| step * last / steps).collect();
-    places.dedup();
-    places
-        .into_iter()
-        .filter_map(|place| all.get(place).copied())
-        .collect()
 }
 
 /// Only of what can be simulated.
@@ -184,23 +172,5 @@ mod tests {
         let found = surplus(&eds::read(text).dictionary);
         let names: Vec<String> = found.iter().map(ToString::to_string).collect();
         assert_eq!(names, ["surplus:1002:00", "surplus:1001:03"]);
-    }
-
-    #[test]
-    fn a_few_are_taken_from_the_whole() {
-        let all: Vec<ObjectFault> = (0..=10)
-            .map(|sub| ObjectFault::new(ObjectFaultKind::Missing, 0x1000, sub))
-            .collect();
-        let of = |count: usize| {
-            let taken = spread(all.get(..count).unwrap());
-            taken.iter().map(ToString::to_string).collect::<Vec<_>>()
-        };
-        assert_eq!(of(0), [""; 0]);
-        assert_eq!(of(1), ["missing:1000:00"]);
-        assert_eq!(of(2), ["missing:1000:00", "missing:1000:01"]);
-        assert_eq!(
-            of(11),
-            ["missing:1000:00", "missing:1000:05", "missing:1000:0A"]
-        );
     }
 }
