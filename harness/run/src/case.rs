@@ -75,6 +75,7 @@ impl Tester<'_> {
         self.session.begin_case();
         self.watch.begin_case();
         self.saved.clear();
+        self.history.clear();
         self.notes.clear();
         self.restores_by_steps = !case.restore.steps.is_empty();
         self.steps_begun = false;
@@ -249,22 +250,20 @@ impl Tester<'_> {
         part: Part,
     ) {
         let (verdict, mismatch) = match stop {
-            Stop::Mismatch(mismatch) => match self.documented(check, &mismatch) {
-                Some(words) => {
-                    let mut mismatch = *mismatch;
-                    mismatch.notes.push(words);
-                    (Verdict::Deviation, mismatch)
-                }
-                None if part == Part::Control => {
-                    let mut mismatch = *mismatch;
-                    mismatch
-                        .notes
-                        .push("this is the control: without it nothing is judged".into());
-                    (Verdict::Inconclusive, mismatch)
-                }
-                None => (Verdict::Fail, *mismatch),
-            },
-            Stop::Undecided(mismatch) => (Verdict::Inconclusive, *mismatch),
+            Stop::Mismatch(mismatch) => {
+                let (verdict, note) = match self.documented(check, &mismatch) {
+                    Some(words) => (Verdict::Deviation, Some(words)),
+                    None if part == Part::Control => (
+                        Verdict::Inconclusive,
+                        Some("this is the control: without it nothing is judged".into()),
+                    ),
+                    None => (Verdict::Fail, None),
+                };
+                let mut mismatch = self.with_history(*mismatch);
+                mismatch.notes.extend(note);
+                (verdict, mismatch)
+            }
+            Stop::Undecided(mismatch) => (Verdict::Inconclusive, self.with_history(*mismatch)),
             Stop::NotSaved(name) => (
                 Verdict::Error,
                 Mismatch {
@@ -306,6 +305,14 @@ impl Tester<'_> {
             .failures
             .push(self.failure(verdict, mismatch, place));
         findings.excerpt = excerpt(&self.session, self.dictionary);
+    }
+
+    /// Says after what the device did not do as it should.
+    fn with_history(&self, mismatch: Mismatch) -> Mismatch {
+        Mismatch {
+            what: self.history.tell(&mismatch.what),
+            ..mismatch
+        }
     }
 
     fn find_not_put_back(&mut self, findings: &mut Findings, stop: Stop, place: Place) {

@@ -17,6 +17,7 @@ use fieldproof_wire::canopen::NodeId;
 use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
 use crate::entries;
+use crate::history::History;
 use crate::node::{HEARTBEAT, NodeWatch};
 use crate::relocate::relocate;
 use crate::sdo::Outcome;
@@ -160,6 +161,7 @@ impl<'a> Player<'a> {
             sync_period: None,
             restores_by_steps: false,
             steps_begun: false,
+            history: History::default(),
             sdo_request: None,
             open_transfer: None,
             strict: job.strict,

@@ -3,17 +3,14 @@
 use std::time::Duration;
 
 use fieldproof_link::{Framing, Line, PortIndex};
-use fieldproof_record::{Direction, Limits, SerialEvent};
-use fieldproof_wire::describe::{
-    Direction as ModbusDirection, describe_modbus, describe_modbus_tcp,
-};
+use fieldproof_record::Limits;
 use fieldproof_wire::modbus::{crc16, crc16_bytes};
 
-use crate::limits::{nanoseconds, show};
+use crate::limits::nanoseconds;
 use crate::modbus_tcp;
-use crate::session::{Message, Received, Traffic};
+use crate::session::{Message, Received};
 use crate::stop::{Came, Stop};
-use crate::tester::{SERIAL, Tester};
+use crate::tester::Tester;
 
 /// An answer by the rules of the line: right CRC or header, no spoilt character, not before its time.
 #[derive(Debug)]
@@ -64,46 +61,6 @@ impl Tester<'_> {
         }
     }
 
-    /// Says what the request was that a failure is about, and what came after it.
-    pub(crate) fn with_exchange(&self, mut stop: Stop) -> Stop {
-        let (Stop::Mismatch(mismatch) | Stop::Undecided(mismatch)) = &mut stop else {
-            return stop;
-        };
-        if self.main_role != SERIAL {
-            return stop;
-        }
-        let serial = self.session.trace().filter_map(|traffic| match traffic {
-            Traffic::Serial(event) => Some(event),
-            Traffic::Can(_) => None,
-        });
-        let serial: Vec<_> = serial.collect();
-        let Some(sent) = serial
-            .iter()
-            .rposition(|event| event.direction == Direction::Sent)
-        else {
-            return stop;
-        };
-        let described: Vec<String> = serial
-            .iter()
-            .skip(sent)
-            .take(2)
-            .map(|event| self.describe_serial(event))
-            .collect();
-        mismatch.what = format!("{}: {}", mismatch.what, described.join("; "));
-        stop
-    }
-
-    fn describe_serial(&self, event: &SerialEvent) -> String {
-        let direction = match event.direction {
-            Direction::Sent => ModbusDirection::Request,
-            Direction::Received | Direction::Companion => ModbusDirection::Response,
-        };
-        match self.session.line(PortIndex(event.port.into())) {
-            Line::Stream(Framing::ModbusTcp) => describe_modbus_tcp(&event.bytes, direction),
-            _ => describe_modbus(&event.bytes, direction),
-        }
-    }
-
     /// Sends a request and waits for the answer; `None` if none comes.
     pub(crate) fn modbus_exchange(
         &mut self,
@@ -151,6 +108,15 @@ impl Tester<'_> {
             Some(transaction) => modbus_tcp::read_answer(&bytes, transaction, to).map(Some),
             None => read_answer(&bytes).map(Some),
         }
+    }
+
+    /// What came instead of an answer.
+    pub(crate) fn no_answer(&self, port: PortIndex, expected: String) -> Stop {
+        let what = match self.session.is_closed(port) {
+            true => "the Modbus server has closed the connection",
+            false => "the Modbus slave does not answer",
+        };
+        Stop::mismatch(what, expected, "nothing", Came::Silence)
     }
 
     /// A reply begins no earlier than 3.5 characters after the request, where such silences mean something, and no later
@@ -206,14 +172,4 @@ fn crc_hint(body: &[u8], crc: [u8; 2]) -> String {
     } else {
         format!("a CRC-16 over {} bytes was expected", body.len())
     }
-}
-
-/// What came instead of an answer.
-pub(crate) fn no_answer(within: Duration) -> Stop {
-    Stop::mismatch(
-        "the Modbus slave does not answer",
-        format!("an answer within {}", show(within)),
-        "nothing",
-        Came::Silence,
-    )
 }

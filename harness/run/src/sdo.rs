@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use fieldproof_can::{Frame, Id};
 use fieldproof_wire::canopen::sdo::{Data, RawSdo, Request, Response, Segment, Transfer};
-use fieldproof_wire::canopen::{AbortCode, Multiplexer, Service, cob_id};
+use fieldproof_wire::canopen::{AbortCode, Multiplexer, NodeId, Service, cob_id};
 use fieldproof_wire::describe::describe_frame;
 
 use crate::stop::{Came, Stop};
@@ -23,6 +23,26 @@ pub(crate) enum Outcome<T> {
 pub(crate) struct Uploaded {
     bytes: Vec<u8>,
     size_is_given: bool,
+    pub(crate) protocol: Protocol,
+}
+
+/// How a value came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Protocol {
+    Expedited,
+    Segmented,
+    Block,
+}
+
+impl Protocol {
+    /// To be put behind an object.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Protocol::Expedited => "",
+            Protocol::Segmented => " in segments",
+            Protocol::Block => " in blocks",
+        }
+    }
 }
 
 impl Uploaded {
@@ -34,10 +54,11 @@ impl Uploaded {
         }
     }
 
-    pub(crate) fn sized(bytes: Vec<u8>) -> Uploaded {
+    pub(crate) fn sized(bytes: Vec<u8>, protocol: Protocol) -> Uploaded {
         Uploaded {
             bytes,
             size_is_given: true,
+            protocol,
         }
     }
 }
@@ -96,10 +117,14 @@ impl Tester<'_> {
         within: Duration,
     ) -> Result<Outcome<Uploaded>, Stop> {
         match transfer {
-            Transfer::Expedited(data) => Ok(Outcome::Done(Uploaded::sized(data.bytes().to_vec()))),
+            Transfer::Expedited(data) => Ok(Outcome::Done(Uploaded::sized(
+                data.bytes().to_vec(),
+                Protocol::Expedited,
+            ))),
             Transfer::ExpeditedUnsized(data) => Ok(Outcome::Done(Uploaded {
                 bytes: data.to_vec(),
                 size_is_given: false,
+                protocol: Protocol::Expedited,
             })),
             Transfer::Segmented { size } => {
                 // Until the last segment has come the server waits for the next request.
@@ -124,7 +149,18 @@ impl Tester<'_> {
                 Response::Abort {
                     object: named,
                     code,
-                } => return refused(object, named, code),
+                } => {
+                    // The server has nothing left to send, and has not said so.
+                    if size.is_some_and(|size| size as usize == value.len()) {
+                        return Err(Stop::mismatch(
+                            format!("no segment of {object} is marked as the last"),
+                            "the last segment says that it is the last",
+                            format!("abort {} for {named}", show_abort(code)),
+                            Came::Abort(code.0),
+                        ));
+                    }
+                    return refused(object, named, code);
+                }
                 Response::UploadSegment(segment) => {
                     check_toggle(segment.toggle, toggle)?;
                     value.extend_from_slice(segment.data.bytes());
@@ -145,13 +181,13 @@ impl Tester<'_> {
             }
         }
         match size {
-            Some(size) if size as usize != value.len() => Err(Stop::mismatch(
+            Some(size) if size as usize != value.len() => Err(Stop::differs(
                 "the segments do not carry as many bytes as the server announced",
                 format!("{size} bytes"),
                 format!("{} bytes", value.len()),
                 Came::Other,
             )),
-            _ => Ok(Outcome::Done(Uploaded::sized(value))),
+            _ => Ok(Outcome::Done(Uploaded::sized(value, Protocol::Segmented))),
         }
     }
 
@@ -302,7 +338,7 @@ impl Tester<'_> {
 
 pub(crate) fn malformed(frame: &Frame, expected: String, found: String) -> Stop {
     Stop::mismatch(
-        format!("the SDO answer is malformed, expected {expected}"),
+        format!("the SDO answer is malformed: {found}, and not {expected}"),
         expected,
         found,
         Came::Frame(*frame),
@@ -329,7 +365,7 @@ fn check_protocol(only: Option<Only>, came: Transfer) -> Result<(), Stop> {
         }
         _ => return Ok(()),
     };
-    Err(Stop::mismatch(
+    Err(Stop::differs(
         "the server chooses another protocol for the upload",
         expected,
         found,
@@ -362,7 +398,7 @@ fn check_toggle(answered: bool, asked: bool) -> Result<(), Stop> {
     if answered == asked {
         return Ok(());
     }
-    Err(Stop::mismatch(
+    Err(Stop::differs(
         "the toggle bit of the segment is not that of the request",
         format!("toggle {}", u8::from(asked)),
         format!("toggle {}", u8::from(answered)),
@@ -371,8 +407,10 @@ fn check_toggle(answered: bool, asked: bool) -> Result<(), Stop> {
 }
 
 pub(crate) fn wrong_service(expected: &str, came: &Response) -> Stop {
-    let frame = Frame::of_eight(cob_id(Service::SdoResponse, None), came.encode());
-    Stop::mismatch(
+    // Whose answer it is makes no difference to its words.
+    let id = cob_id(Service::SdoResponse, Some(NodeId::MIN));
+    let frame = Frame::of_eight(id, came.encode());
+    Stop::differs(
         "the SDO server answers with another service",
         expected,
         describe_frame(&frame),

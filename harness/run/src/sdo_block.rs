@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use fieldproof_can::{Frame, Id};
+use fieldproof_link::Instant;
 use fieldproof_suite::model::{BlockMistake, BlockTransfer};
 use fieldproof_wire::canopen::sdo::{
     BlockSegment, BlockSize, Request, Response, SegmentNumber, UnusedBytes, block_crc,
@@ -10,7 +11,7 @@ use fieldproof_wire::canopen::sdo::{
 use fieldproof_wire::canopen::{Multiplexer, Service};
 
 use crate::sdo::{
-    LONGEST_VALUE, Outcome, Uploaded, check_object, malformed, read_response, refused,
+    LONGEST_VALUE, Outcome, Protocol, Uploaded, check_object, malformed, read_response, refused,
     wrong_service,
 };
 use crate::session::{Message, Received};
@@ -48,6 +49,7 @@ struct Block {
     count: u8,
     /// The last of them was the last of the transfer.
     last: bool,
+    ended_at: Instant,
 }
 
 impl Tester<'_> {
@@ -117,6 +119,7 @@ impl Tester<'_> {
                 Outcome::Done(came) => came,
                 Outcome::Refused(code) => return Ok(Ended::With(Outcome::Refused(code))),
             };
+            let in_this = block_size;
             block_size = block.next_block_size.unwrap_or(block_size);
             let mut acknowledged = came.count;
             match mistake.take() {
@@ -142,6 +145,27 @@ impl Tester<'_> {
                 return Ok(Ended::With(outcome));
             }
             self.send_sdo(acknowledge)?;
+            self.check_nothing_beyond(came.ended_at, in_this)?;
+        }
+    }
+
+    /// The tester acknowledges at once, so that what lies before its acknowledge was sent without one.
+    fn check_nothing_beyond(&self, block_ended_at: Instant, block_size: u8) -> Result<(), Stop> {
+        let id = Id::Standard(self.identifier(Service::SdoResponse)?);
+        let acknowledged_at = self.session.last_sent().end;
+        let beyond = self.session.count(|received| {
+            received.at > block_ended_at
+                && received.at < acknowledged_at
+                && matches!(received.message, Message::Can(frame) if frame.id() == id)
+        });
+        match beyond {
+            0 => Ok(()),
+            _ => Err(Stop::mismatch(
+                format!("the server goes on beyond the block size of {block_size}"),
+                "nothing more until the acknowledge",
+                "another segment",
+                Came::Other,
+            )),
         }
     }
 
@@ -157,6 +181,7 @@ impl Tester<'_> {
             data: Vec::with_capacity(usize::from(most) * SEGMENT),
             count: 0,
             last: false,
+            ended_at: self.session.last_sent().end,
         };
         let mut since = self.session.last_sent().end;
         while block.count < most && !block.last {
@@ -186,7 +211,7 @@ impl Tester<'_> {
                 })?,
             };
             if segment.number.raw() != number {
-                return Err(Stop::mismatch(
+                return Err(Stop::differs(
                     "the segments of the block are not in order",
                     format!("segment {number}"),
                     format!("segment {} ({frame})", segment.number.raw()),
@@ -196,6 +221,7 @@ impl Tester<'_> {
             block.data.extend(segment.data);
             block.count = number;
             block.last = segment.last;
+            block.ended_at = received.at;
         }
         Ok(Outcome::Done(block))
     }
@@ -253,23 +279,23 @@ impl Tester<'_> {
         if let Some(size) = agreed.size
             && size as usize != value.len()
         {
-            return Err(Stop::mismatch(
+            return Err(Stop::differs(
                 "the blocks do not carry as many bytes as the server announced",
                 format!("{size} bytes"),
-                format!(
-                    "{} bytes, with {} bytes of the last segment without data",
-                    value.len(),
-                    unused.raw()
-                ),
+                format!("{} bytes", value.len()),
                 Came::Other,
-            ));
+            )
+            .with_note(format!(
+                "{} bytes of the last segment are without data, it says",
+                unused.raw()
+            )));
         }
         let (expected, what) = match agreed.crc {
             true => (block_crc(&value), "the CRC of the upload is wrong"),
             false => (0, "the upload has a CRC that was not agreed on"),
         };
         if crc != expected {
-            return Err(Stop::mismatch(
+            return Err(Stop::differs(
                 what,
                 format!("{expected:04X}h"),
                 format!("{crc:04X}h"),
@@ -277,7 +303,7 @@ impl Tester<'_> {
             ));
         }
         self.send_sdo(Request::EndBlockUpload.encode())?;
-        Ok(Outcome::Done(Uploaded::sized(value)))
+        Ok(Outcome::Done(Uploaded::sized(value, Protocol::Block)))
     }
 
     /// Writes an object in blocks.
@@ -510,7 +536,7 @@ impl Download<'_> {
         one_was_lost: bool,
     ) -> Result<(), Stop> {
         if acknowledged > in_order {
-            let wrong = Stop::mismatch(
+            let wrong = Stop::differs(
                 "the server acknowledges segments that it did not get in order",
                 format!("at most segment {in_order}"),
                 format!("segment {acknowledged}"),

@@ -78,6 +78,8 @@ pub(crate) struct Session<'a> {
     transaction: u16,
     /// Connections that the case has opened, and the port that each leads to.
     connections: Vec<(PortIndex, PortIndex)>,
+    /// Connections that the device has ended.
+    closed: Vec<PortIndex>,
     /// How many ports there were from the beginning; those behind them are connections that were opened.
     lasting: usize,
 }
@@ -113,6 +115,7 @@ impl<'a> Session<'a> {
             last_activity,
             transaction: 0,
             connections: Vec::new(),
+            closed: Vec::new(),
             lasting,
         }
     }
@@ -356,6 +359,17 @@ impl<'a> Session<'a> {
             .any(|received| received.at > self.last_sent.end && wanted(received))
     }
 
+    /// The first of the things that have come since the last send, and were not expected, that `look` makes something of.
+    pub(crate) fn look_for<T>(&self, look: impl Fn(&Received) -> Option<T>) -> Option<T> {
+        let later = |received: &&Received| received.at > self.last_sent.end;
+        self.inbox.iter().filter(later).find_map(look)
+    }
+
+    /// Whether the device has ended the connection.
+    pub(crate) fn is_closed(&self, port: PortIndex) -> bool {
+        self.closed.contains(&port)
+    }
+
     /// How many of the things that have come and were not expected are like this.
     pub(crate) fn count(&self, wanted: impl Fn(&Received) -> bool) -> usize {
         self.inbox
@@ -446,7 +460,14 @@ impl<'a> Session<'a> {
                 })
             }
             // Whoever still expects something there will miss it.
-            Reception::Connected | Reception::Closed => None,
+            Reception::Connected => {
+                self.closed.retain(|port| *port != arrival.port);
+                None
+            }
+            Reception::Closed => {
+                self.closed.push(arrival.port);
+                None
+            }
             Reception::Character(character) => {
                 self.note_activity(arrival.port, arrival.at);
                 let assembler = self.assemblers.get_mut(arrival.port.0)?.as_mut()?;

@@ -1,5 +1,7 @@
 //! Why a step ended before its end.
 
+use std::fmt::Display;
+
 use fieldproof_can::Frame;
 use fieldproof_link::LinkError;
 
@@ -78,6 +80,18 @@ impl Stop {
         }))
     }
 
+    /// What it holds or says instead, in the first line too.
+    pub(crate) fn differs(
+        what: impl Display,
+        expected: impl Display,
+        actual: impl Display,
+        came: Came,
+    ) -> Stop {
+        let (expected, actual) = (expected.to_string(), actual.to_string());
+        let what = format!("{what}: {}, and not {}", cut(&actual), cut(&expected));
+        Stop::mismatch(what, expected, actual, came)
+    }
+
     pub(crate) fn undecided(
         what: impl Into<String>,
         expected: impl Into<String>,
@@ -96,5 +110,15 @@ impl Stop {
             mismatch.notes.push(note.into());
         }
         self
+    }
+}
+
+/// So much of a value fits a line beside others.
+const MOST_IN_A_LINE: usize = 96;
+
+fn cut(text: &str) -> String {
+    match text.char_indices().nth(MOST_IN_A_LINE) {
+        Some((end, _)) => format!("{} ..", text.get(..end).unwrap_or_default()),
+        None => text.to_owned(),
     }
 }

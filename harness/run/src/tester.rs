@@ -10,6 +10,7 @@ use fieldproof_suite::device::{DeviceDescription, Feature};
 use fieldproof_suite::scalar::ObjectAddress;
 use fieldproof_wire::canopen::{Multiplexer, NodeId, Service, cob_id, identify};
 
+use crate::history::History;
 use crate::limits::{judge, nanoseconds, show};
 use crate::node::NodeWatch;
 use crate::session::{Message, Received, Session};
@@ -51,6 +52,8 @@ pub(crate) struct Tester<'a> {
     pub(crate) sync_period: Option<Duration>,
     /// The case says itself how what it changes is put back.
     pub(crate) restores_by_steps: bool,
+    /// What the case has done so far.
+    pub(crate) history: History,
     /// The last request to an SDO server.
     pub(crate) sdo_request: Option<Frame>,
     /// The object of a segmented or block transfer that has not ended.
@@ -147,7 +150,7 @@ impl Tester<'_> {
         })));
         match verdict {
             Verdict::Pass => Ok(()),
-            Verdict::Fail => Err(Stop::mismatch(
+            Verdict::Fail => Err(Stop::differs(
                 format!("{name} is outside its limits"),
                 show_limits(limits),
                 show(measured),

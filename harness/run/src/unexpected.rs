@@ -177,7 +177,7 @@ fn unexpected(kind: &str, came: &str, what: Came) -> Stop {
     Stop::mismatch(
         match &what {
             Came::Frame(frame) => format!("an unexpected {kind} came: {}", describe_frame(frame)),
-            _ => format!("an unexpected {kind} came"),
+            _ => format!("an unexpected {kind} came: {came}"),
         },
         "nothing more",
         came,

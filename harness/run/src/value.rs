@@ -203,7 +203,7 @@ pub(crate) fn check_decode(decode_rule: &Decode, data: &[u8]) -> Result<(), Stop
     }
     let unit = decode_rule.unit.as_deref().unwrap_or_default();
     let scaled = raw as f64 * decode_rule.multiply as f64 / decode_rule.divide as f64;
-    Err(Stop::mismatch(
+    Err(Stop::differs(
         format!("{name} is not what it should be"),
         format!("{} {unit}", show_decimal(decode_rule.equals))
             .trim_end()

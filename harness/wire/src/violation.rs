@@ -32,7 +32,7 @@ impl fmt::Display for Rule {
             Rule::FrameKind => "kind of frame",
             Rule::Command => "command",
             Rule::Range => "range",
-            Rule::Count => "count",
+            Rule::Count => "byte count",
             Rule::Reserved => "reserved",
             Rule::Checksum => "checksum",
         })

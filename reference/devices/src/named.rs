@@ -29,7 +29,16 @@ const WORDS: &[(&str, &[&str])] = &[
     ("address-before-quantity", &["quantity", "exception"]),
     ("address-change-answered-from-old", &["address"]),
     ("address-change-not-answered", &["no answer", "new address"]),
+    (
+        "address-text-ignored",
+        &["change of address", "addr:", "new address"],
+    ),
+    ("addresses-from-1", &["address", "input", "exception 02"]),
     ("addresses-wrap", &["65535", "address", "exception"]),
+    (
+        "answers-late",
+        &["response time", "too late", "does not answer"],
+    ),
     (
         "application-kept-by-reset-node",
         &["reset node", "power-on"],
@@ -80,10 +89,11 @@ const WORDS: &[(&str, &[&str])] = &[
     ("cleared-errors-stay", &["1003h"]),
     ("client-abort-ignored", &["abort"]),
     ("client-abort-refused", &["abort"]),
+    ("coil-not-written", &["coil", "function 05h"]),
     ("coil-value-unchecked", &["coil", "exception"]),
     (
         "communication-errors-uncounted",
-        &["sub-function 0Ch", "counter"],
+        &["sub-function 000Ch", "error count"],
     ),
     (
         "communication-kept-by-reset-communication",
@@ -93,6 +103,11 @@ const WORDS: &[(&str, &[&str])] = &[
         "communication-kept-by-reset-node",
         &["reset node", "power-on"],
     ),
+    (
+        "conditions-for-all",
+        &["condition", "exception 05", "exception 08"],
+    ),
+    ("conditions-ignored", &["condition", "exception"]),
     ("configuration-date-unsaved", &["1020h"]),
     (
         "consumer-before-first-heartbeat",
@@ -111,12 +126,48 @@ const WORDS: &[(&str, &[&str])] = &[
         "consumer-wants-operational",
         &["1016h", "heartbeat", "8130h"],
     ),
+    (
+        "counter-0B-stays",
+        &["sub-function 000Bh", "sub-function 0Bh", "bus message"],
+    ),
+    (
+        "counter-0D-stays",
+        &[
+            "sub-function 000Dh",
+            "sub-function 0Dh",
+            "exception error count",
+        ],
+    ),
+    (
+        "counter-0E-stays",
+        &["sub-function 000Eh", "sub-function 0Eh", "server message"],
+    ),
+    (
+        "counter-0F-stays",
+        &[
+            "sub-function 000Fh",
+            "sub-function 0Fh",
+            "no response count",
+        ],
+    ),
+    (
+        "counter-11-stays",
+        &["sub-function 0011h", "sub-function 11h", "busy count"],
+    ),
     ("counters-not-cleared", &["sub-function 0Ah", "counter"]),
     ("crc-bytes-swapped", &["CRC"]),
     ("crc-half-checked", &["CRC"]),
     (
         "cyclic-timer-without-effect",
         &["6200h", "1800h:05", "TPDO1"],
+    ),
+    (
+        "deaf-after-bad-frame",
+        &["does not answer", "no answer", "wrong CRC"],
+    ),
+    (
+        "deaf-after-long-frame",
+        &["does not answer", "too long", "256 bytes"],
     ),
     ("default-mapping-wrong", &["mapping", "1A00h", "1600h"]),
     ("direction-of-count-fixed", &["position", "6004h", "6000h"]),
@@ -288,7 +339,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("emergency-without-node", &["1014h"]),
     ("emergency-without-register", &["error register", "EMCY"]),
     ("empty-pdo-resets", &["RPDO", "boot-up"]),
-    ("empty-value-padded", &["size"]),
+    ("empty-value-padded", &["size", "0 bytes"]),
     ("error-behaviour-fixed", &["1029h", "stopped"]),
     ("error-behaviour-ignored", &["1029h", "pre-operational"]),
     ("error-behaviour-out-of-stopped", &["1029h", "stopped"]),
@@ -312,6 +363,10 @@ const WORDS: &[(&str, &[&str])] = &[
     ("event-timer-unit", &["event timer", "TPDO"]),
     ("event-tpdo-with-sync", &["TPDO", "SYNC"]),
     ("exception-03-for-02", &["exception"]),
+    (
+        "exception-status-long",
+        &["exception status", "function 07h", "length"],
+    ),
     ("exception-too-long", &["exception"]),
     ("exception-without-80h", &["exception"]),
     ("excess-quantity-answered", &["quantity", "exception"]),
@@ -328,6 +383,10 @@ const WORDS: &[(&str, &[&str])] = &[
         &["event counter", "function 0Bh"],
     ),
     ("fifo-count-left-out", &["byte count", "function 18h"]),
+    (
+        "first-row-only",
+        &["file record", "function 14h", "sub-request"],
+    ),
     ("first-rpdo-counts", &["RPDO"]),
     ("foreign-heartbeat-ends-own", &["heartbeat"]),
     ("gap-read", &["sub-index", "06090011h"]),
@@ -375,12 +434,20 @@ const WORDS: &[(&str, &[&str])] = &[
     ("heartbeat-period-doubled", &["heartbeat", "1017h"]),
     ("heartbeat-state-wrong", &["heartbeat"]),
     ("heartbeat-toggles", &["heartbeat", "toggle"]),
+    (
+        "high-bit-ignored",
+        &["function code", "exception 01", "highest bit"],
+    ),
     ("high-identifiers-taken", &["1005h", "1012h", "1014h"]),
     ("high-limit-unchecked", &["limit", "06090031h"]),
     ("history-count-taken", &["1003h"]),
     ("holes-answered", &["exception"]),
     ("identifier-nearly-compared", &["RPDO", "identifier"]),
     ("identity-of-the-template", &["1018h", "vendor-ID"]),
+    (
+        "idle-line-ends-frame",
+        &["1.5 character", "silence", "does not answer"],
+    ),
     (
         "inhibit-time-changed-while-valid",
         &["inhibit time", "1800h:03"],
@@ -390,6 +457,11 @@ const WORDS: &[(&str, &[&str])] = &[
     ("invalid-rpdo-taken", &["RPDO", "bit 31"]),
     ("invalid-server-answers", &["SDO server", "bit 31"]),
     ("invalid-tpdo-sent", &["TPDO", "bit 31"]),
+    (
+        "large-requests-refused",
+        &["quantity", "125 registers", "exception 03"],
+    ),
+    ("last-address-refused", &["65535", "FFFFh", "exception 02"]),
     ("late-rpdo-unreported", &["8250h", "EMCY", "event timer"]),
     ("length-unchecked", &["length", "06070012h", "06070013h"]),
     (
@@ -404,11 +476,17 @@ const WORDS: &[(&str, &[&str])] = &[
     ("limits-ignored", &["limit", "exception"]),
     ("limits-not-checked", &["limit", "range"]),
     ("listen-only-answered", &["listen only"]),
+    ("log-empty", &["event log", "function 0Ch"]),
+    ("long-frames-cut", &["256 bytes", "257 bytes", "too long"]),
+    (
+        "long-loopback-refused",
+        &["loopback", "sub-function 0000h", "query data"],
+    ),
     ("long-ratio-cut", &["TPDO", "SYNC"]),
     ("long-rpdo-passed-over", &["RPDO"]),
     ("long-sync-resets", &["SYNC", "boot-up"]),
     ("long-value-wraps", &["segment", "upload"]),
-    ("loopback-cut", &["loopback", "sub-function 00h"]),
+    ("loopback-cut", &["loopback", "sub-function 0000h"]),
     ("lost-heartbeat-code-wrong", &["8130h", "EMCY"]),
     (
         "lost-heartbeat-reported-again",
@@ -424,7 +502,10 @@ const WORDS: &[(&str, &[&str])] = &[
     ("lss-activation-ignored", &["bit rate", "bit timing"]),
     ("lss-answers-cut-short", &["eight bytes", "8 bytes"]),
     ("lss-answers-twice", &["twice", "LSS answer"]),
-    ("lss-any-mode-configures", &["mode", "configuration"]),
+    (
+        "lss-any-mode-configures",
+        &["switch state global", "configuration"],
+    ),
     ("lss-bit-timing-at-once", &["bit timing", "bit rate"]),
     ("lss-bit-timing-missing", &["bit timing", "800 kbit/s"]),
     (
@@ -483,7 +564,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("lss-pending-node-told", &["node-ID"]),
     ("lss-product-ignored", &["product code", "selected"]),
     ("lss-refused-node-kept", &["node-ID"]),
-    ("lss-reserved-bytes-stale", &["reserved bytes"]),
+    ("lss-reserved-bytes-stale", &["reserved byte"]),
     (
         "lss-revision-answers-5b",
         &["revision number", "product code"],
@@ -496,7 +577,10 @@ const WORDS: &[(&str, &[&str])] = &[
     ("lss-short-requests-taken", &["eight bytes", "8 bytes"]),
     ("lss-silent-after-127-answers", &["LSS response", "127"]),
     ("lss-stays-in-configuration", &["configuration", "waiting"]),
-    ("lss-store-forgets", &["stored", "node-ID", "bit rate"]),
+    (
+        "lss-store-forgets",
+        &["store configuration", "node-ID", "bit rate"],
+    ),
     (
         "lss-store-unanswered",
         &["LSS response", "store configuration"],
@@ -506,7 +590,10 @@ const WORDS: &[(&str, &[&str])] = &[
     ("lss-talks-while-switching", &["switch delay", "bit timing"]),
     ("lss-unconfigured-silent", &["non-configured", "node-ID"]),
     ("lss-unconfigured-with-node", &["non-configured", "node-ID"]),
-    ("lss-unknown-answered", &["command specifier"]),
+    (
+        "lss-unknown-answered",
+        &["unknown command", "a command of the LSS master"],
+    ),
     ("lss-vendor-ignored", &["vendor-ID", "selected"]),
     (
         "mapping-changed-while-valid",
@@ -529,9 +616,23 @@ const WORDS: &[(&str, &[&str])] = &[
     ("mapping-length-unchecked", &["mapping", "1A00h", "1600h"]),
     ("mapping-not-stored", &["mapping", "1A00h", "1600h"]),
     ("mapping-order-turned", &["mapping", "TPDO"]),
+    ("mask-lost", &["mask", "function 16h"]),
     ("masks-simply-joined", &["mask", "function 16h"]),
+    ("memory-lost", &["power off", "power on", "power cycle"]),
+    (
+        "more-follows-missing",
+        &["more follows", "device identification"],
+    ),
+    (
+        "multiple-echoes-bytes",
+        &["quantity", "function 10h", "function 0Fh"],
+    ),
     ("next-block-size-ignored", &["block size"]),
-    ("nmt-command-of-one-byte-obeyed", &["one byte", "two bytes"]),
+    (
+        "next-object-wrong",
+        &["next object", "device identification"],
+    ),
+    ("nmt-command-of-one-byte-obeyed", &["1 byte", "2 bytes"]),
     (
         "nmt-command-of-three-bytes-resets",
         &["two bytes", "boot-up"],
@@ -547,12 +648,18 @@ const WORDS: &[(&str, &[&str])] = &[
     ),
     ("nmt-without-node-obeyed", &["one byte", "two bytes", "NMT"]),
     ("node-id-active-before-reset", &["node-ID"]),
+    ("nothing-lost", &["power off", "power on", "power cycle"]),
     ("one-tpdo-per-sync", &["TPDO", "SYNC"]),
     ("operating-status-frozen", &["6500h"]),
     ("other-address-answered", &["address", "another slave"]),
     ("own-abort-not-final", &["abort", "segment"]),
     ("padding-bits-set", &["bits after the last", "last byte"]),
     ("parameters-outlive-reset", &["reset", "power-on"]),
+    ("parity-ignored", &["parity"]),
+    (
+        "patient-line",
+        &["3.5 character", "silence", "does not answer"],
+    ),
     (
         "pdo-identifier-changed-while-valid",
         &["COB-ID", "1800h:01", "1400h:01"],
@@ -585,7 +692,13 @@ const WORDS: &[(&str, &[&str])] = &[
     ("read-only-confirmed", &["read-only", "exception"]),
     ("read-only-written", &["read-only", "cannot be written"]),
     ("reads-before-writes", &["function 17h"]),
+    (
+        "reads-though-refused",
+        &["function 17h", "read/write multiple"],
+    ),
+    ("records-not-written", &["file record", "function 15h"]),
     ("refusal-without-reason", &["abort code", "06020000h"]),
+    ("refusals-count-as-events", &["event count", "function 0Bh"]),
     ("refused-entry-clears", &["mapping", "1A00h", "1600h"]),
     ("refused-value-kept", &["was refused", "limit"]),
     ("remote-bit-ignored", &["TPDO", "remote frame", "bit 30"]),
@@ -593,6 +706,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("remote-sample-fresh", &["remote frame", "252", "TPDO"]),
     ("remote-tpdo-with-sync", &["TPDO", "SYNC"]),
     ("reply-too-early", &["response time", "3.5"]),
+    ("request-echoed", &["echo", "length", "CRC"]),
     (
         "reserved-type-taken",
         &["transmission type", "1800h:02", "1400h:02"],
@@ -609,6 +723,10 @@ const WORDS: &[(&str, &[&str])] = &[
     ("restore-groups-ignored", &["1011h", "default"]),
     ("restore-without-signature", &["1011h", "signature"]),
     ("restricted-identifiers-taken", &["1005h", "1012h", "1014h"]),
+    (
+        "rests-after-answer",
+        &["does not answer", "no answer", "3.5 character"],
+    ),
     ("rpdo-before-sync", &["RPDO", "SYNC"]),
     ("rpdo-late-from-start", &["8250h", "EMCY", "event timer"]),
     ("run-indicator-off", &["run indicator", "function 11h"]),
@@ -624,7 +742,7 @@ const WORDS: &[(&str, &[&str])] = &[
         "sdo-late-now-and-then",
         &["SDO server does not answer", "response time"],
     ),
-    ("sdo-obeyed-in-stopped", &["stopped"]),
+    ("sdo-obeyed-in-stopped", &["NMT stop", "stopped"]),
     (
         "sdo-of-the-next-node-answered",
         &["node-ID", "another node", "SDO"],
@@ -640,8 +758,12 @@ const WORDS: &[(&str, &[&str])] = &[
     ("segmented-size-wrong", &["size", "segments"]),
     ("server-cob-id-ignored", &["SDO server", "COB-ID"]),
     ("servers-share-a-transfer", &["SDO server", "transfer"]),
-    ("settings-forgotten", &["saved", "default"]),
+    (
+        "settings-forgotten",
+        &["saved", "default", "power on", "reset node"],
+    ),
     ("short-pdo-unreported", &["8210h", "EMCY"]),
+    ("short-pdu-filled", &["too short", "length", "exception 03"]),
     (
         "short-request-executed",
         &["short", "8 bytes", "eight bytes"],
@@ -653,6 +775,10 @@ const WORDS: &[(&str, &[&str])] = &[
         &["boot-up", "malformed TIME", "TIME day"],
     ),
     ("signatures-reversed", &["1010h", "1011h", "signature"]),
+    (
+        "single-not-written",
+        &["function 06h", "write single", "holding register"],
+    ),
     ("small-segmented-refused", &["is refused", "segment"]),
     ("speed-clipped", &["2000h", "speed"]),
     ("speed-sign-lost", &["speed", "0004h"]),
@@ -732,6 +858,51 @@ const WORDS: &[(&str, &[&str])] = &[
     ("synchronous-rpdo-lost", &["RPDO", "SYNC"]),
     ("synchronous-tpdo-on-start", &["TPDO"]),
     ("tables-mixed", &["function 02h", "function 04h", "input"]),
+    ("tcp-ends-after-many", &["connection", "closed"]),
+    (
+        "tcp-first-of-piece",
+        &["does not answer", "several requests", "transaction"],
+    ),
+    (
+        "tcp-flood-stops",
+        &["does not answer", "no answer", "garbage"],
+    ),
+    (
+        "tcp-gone-stops",
+        &["does not answer", "no answer", "connection"],
+    ),
+    (
+        "tcp-half-blocks",
+        &["does not answer", "half a request", "connection"],
+    ),
+    ("tcp-length-ignored", &["length", "MBAP"]),
+    ("tcp-length-without-unit", &["length", "MBAP"]),
+    ("tcp-never-freed", &["does not answer", "connection"]),
+    ("tcp-newest-only", &["does not answer", "connection"]),
+    ("tcp-other-protocols", &["protocol identifier"]),
+    (
+        "tcp-piece-is-request",
+        &["does not answer", "packets", "pieces"],
+    ),
+    (
+        "tcp-remains-kept",
+        &["does not answer", "half a request", "connection"],
+    ),
+    (
+        "tcp-short-buffer",
+        &["does not answer", "260 bytes", "longest"],
+    ),
+    (
+        "tcp-stuck-after-garbage",
+        &["does not answer", "protocol identifier", "header"],
+    ),
+    ("tcp-transaction-counted", &["transaction identifier"]),
+    ("tcp-transaction-zero", &["transaction identifier"]),
+    (
+        "tcp-unit-0-unanswered",
+        &["unit 0", "unit identifier", "does not answer"],
+    ),
+    ("tcp-unit-replaced", &["unit identifier", "unit FFh"]),
     ("time-always-taken", &["TIME day", "1012h"]),
     ("time-cob-id-lost", &["1012h"]),
     ("time-identifier-fixed", &["no TIME", "TIME day", "1012h"]),
@@ -772,6 +943,10 @@ const WORDS: &[(&str, &[&str])] = &[
     ),
     ("unknown-object-answered", &["identification", "exception"]),
     ("unknown-object-read", &["does not exist", "06020000h"]),
+    (
+        "unknown-sub-function-echoed",
+        &["sub-function", "exception 01"],
+    ),
     ("unmappable-mapped", &["mapping", "1A00h", "1600h"]),
     ("unsized-download-refused", &["size", "is refused", "abort"]),
     ("upload-byte-order", &["another value", "byte order"]),

@@ -28,6 +28,7 @@ impl Session<'_> {
         }
         self.assemblers[place] = assembler;
         self.connections.push((connection, port));
+        self.closed.retain(|port| *port != connection);
         self.mark_sent();
         Ok(())
     }

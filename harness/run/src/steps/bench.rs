@@ -107,6 +107,7 @@ impl Tester<'_> {
         self.session.mark_sent();
         let given = self.session.lane().stimulate_companion(port, stimulus);
         given.map_err(|_| Stop::Bench(format!("nothing has: {what}")))?;
+        self.history.add(what.clone());
         self.session
             .emit(Event::Stimulus(Box::new(StimulusEvent { at_ns, what })));
         Ok(())
@@ -153,6 +154,7 @@ impl Tester<'_> {
                 }
                 StimulusError::Failed(reason) => Stop::Bench(format!("{what}: {reason}")),
             })?;
+        self.history.add(what.clone());
         self.session
             .emit(Event::Stimulus(Box::new(StimulusEvent { at_ns, what })));
         Ok(())
@@ -163,6 +165,8 @@ impl Tester<'_> {
         let before = self.session.line(port);
         self.undo.push(Undo::Line(port, before));
         self.session.lane().set_line(port, Line::Can { bit_rate })?;
+        self.history
+            .add(format!("{bit_rate} bit/s on the tester's side"));
         Ok(())
     }
 }

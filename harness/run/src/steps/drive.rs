@@ -239,7 +239,7 @@ fn wrong(statusword: u16, step: &ExpectDrive, when: &str) -> Stop {
         let (number, name) = bit(*which);
         expected.push_str(&format!(", bit {number} ({name}) = {value}"));
     }
-    Stop::mismatch(
+    Stop::differs(
         "the statusword does not say what it should",
         format!("{expected} {when}"),
         show_statusword(statusword),

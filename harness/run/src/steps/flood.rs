@@ -35,6 +35,8 @@ impl Tester<'_> {
         let answered = self.session.now() + self.device.timing.sdo_response;
         self.session.collect_until(answered)?;
         self.session.forget(|received| is_answer(flood, received));
+        self.history
+            .add(format!("a flood of {} frames", flood.frames));
         Ok(())
     }
 }

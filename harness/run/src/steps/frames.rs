@@ -6,6 +6,8 @@ use fieldproof_can::{Frame, Id, MaskedByte, Pattern};
 use fieldproof_link::{Instant, Origin, PortIndex};
 use fieldproof_suite::model::{Alternative, Expect, ExpectSilence, Send};
 use fieldproof_suite::scalar::Tolerance;
+use fieldproof_wire::canopen::emergency::ErrorCode;
+use fieldproof_wire::canopen::nmt::NmtMessage;
 use fieldproof_wire::canopen::{Service, identify};
 use fieldproof_wire::describe::describe_frame;
 
@@ -17,7 +19,20 @@ use crate::value::check_decode;
 
 impl Tester<'_> {
     pub(super) fn send(&mut self, step: &Send) -> Result<(), Stop> {
-        self.send_frame(step.frame.0)
+        self.send_frame(step.frame.0)?;
+        self.history.add(self.sent_words(&step.frame.0));
+        Ok(())
+    }
+
+    /// What the tester sends, in words; of an NMT command for another node they say that it is for another.
+    pub(super) fn sent_words(&self, frame: &Frame) -> String {
+        let words = describe_frame(frame);
+        match NmtMessage::parse(frame) {
+            Ok(message) if message.node.is_some_and(|node| self.node != Some(node)) => {
+                format!("{words}, which is another node")
+            }
+            _ => words,
+        }
     }
 
     pub(super) fn expect(&mut self, step: &Expect) -> Result<(), Stop> {
@@ -124,8 +139,12 @@ impl Tester<'_> {
             Ok(None) => "nothing".to_owned(),
             Err(stop) => return stop,
         };
+        let another = match pattern.exact() {
+            Some(frame) if is_boot_up(&frame) => self.but_another_booted(),
+            _ => String::new(),
+        };
         Stop::mismatch(
-            format!("no {} came in time", name_of(pattern)),
+            format!("no {} came in time{another}", name_of(pattern)),
             format!("{pattern} within {}", show(within)),
             actual,
             Came::Silence,
@@ -209,9 +228,13 @@ fn check_meaning(step: &Expect, frame: &Frame) -> Result<(), Stop> {
 
 /// A frame came under the right identifier that is not the one expected.
 pub(super) fn wrong_frame(pattern: &Pattern, frame: &Frame) -> Stop {
+    let expected = match pattern.exact() {
+        Some(frame) => format!("; expected: {}", describe_frame(&frame)),
+        None => String::new(),
+    };
     let stop = Stop::mismatch(
         format!(
-            "another frame came than expected: {}",
+            "another frame came than expected: {}{expected}",
             describe_frame(frame)
         ),
         format!("{pattern}{}", describe_pattern(pattern)),
@@ -276,6 +299,11 @@ fn check_named_object(frame: &Frame, index: u16, sub: u8) -> Result<(), Stop> {
     ))
 }
 
+fn is_boot_up(frame: &Frame) -> bool {
+    let service = frame.standard_id().and_then(identify);
+    matches!(service, Some((Service::ErrorControl, _))) && frame.bytes() == [0]
+}
+
 /// `SDO response for 1017h:00 (58Ah)`, as far as the pattern says it.
 fn name_of(pattern: &Pattern) -> String {
     let id = show_id(pattern.id());
@@ -292,6 +320,10 @@ fn name_of(pattern: &Pattern) -> String {
         (Service::SdoResponse, [_, Some(low), Some(high), Some(sub), ..]) => {
             let index = u16::from_le_bytes([*low, *high]);
             format!("{service} for {index:04X}h:{sub:02X} ({id})")
+        }
+        (Service::Emergency, [Some(low), Some(high), ..]) => {
+            let code = ErrorCode(u16::from_le_bytes([*low, *high]));
+            format!("{service} {code} ({id})")
         }
         (Service::ErrorControl, [Some(0)]) => format!("boot-up message ({id})"),
         _ => format!("{service} ({id})"),

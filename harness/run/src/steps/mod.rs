@@ -27,7 +27,7 @@ impl Tester<'_> {
             Step::Expect(step) => self.expect(step),
             Step::ExpectSilence(step) => {
                 let silent = self.expect_silence(step);
-                silent.map_err(|stop| self.with_exchange(stop))
+                silent.map_err(|stop| self.with_answer(stop))
             }
             Step::Nmt(step) => self.nmt(step),
             Step::NmtEnter(state) => self.nmt_enter(*state),
@@ -44,11 +44,11 @@ impl Tester<'_> {
             Step::SdoWrite(step) => self.sdo_write(step),
             Step::DriveEnter(target) => self.drive_enter(*target),
             Step::ExpectDrive(step) => self.expect_drive(step),
-            Step::Modbus(step) => self.modbus(step).map_err(|stop| self.with_exchange(stop)),
+            Step::Modbus(step) => self.modbus(step).map_err(|stop| self.with_answer(stop)),
             Step::SendBytes(step) => self.send_raw_bytes(step),
             Step::ExpectBytes(step) => {
                 let came = self.expect_bytes(step);
-                came.map_err(|stop| self.with_exchange(stop))
+                came.map_err(|stop| self.with_answer(stop))
             }
             Step::Connect(step) => self.connect(&step.name),
             Step::Disconnect(step) => self.disconnect(step),

@@ -5,7 +5,8 @@ use fieldproof_suite::scalar::Number;
 use fieldproof_wire::modbus::ExceptionCode;
 
 use crate::limits::show;
-use crate::modbus::{Answer, no_answer, show_bytes};
+use crate::modbus::{Answer, show_bytes};
+use crate::modbus_words::expected_pdu_words;
 use crate::stop::{Came, Stop};
 use crate::tester::Tester;
 use crate::value::{Actual, Saved, register};
@@ -35,6 +36,8 @@ impl Tester<'_> {
             Some(name) => self.port(name)?,
             None => self.modbus_port()?,
         };
+        let words = self.pdu_request_words(to, &request);
+        self.history.add(words);
         let answer = self.modbus_exchange_on(port, to, &request, within)?;
         if let Some((first, _)) = written {
             match &answer {
@@ -46,7 +49,7 @@ impl Tester<'_> {
         let Some(answer) = answer else {
             return match step.expect {
                 ModbusExpectation::Silence => Ok(()),
-                _ => Err(no_answer(within)),
+                _ => Err(self.no_answer(port, format!("an answer within {}", show(within)))),
             };
         };
         if matches!(step.expect, ModbusExpectation::Silence) {
@@ -62,7 +65,7 @@ impl Tester<'_> {
             ));
         }
         if answer.address != to {
-            return Err(Stop::mismatch(
+            return Err(Stop::differs(
                 "another slave answers",
                 format!("address {to:02X}h"),
                 format!("address {:02X}h", answer.address),
@@ -80,7 +83,10 @@ impl Tester<'_> {
                     return Ok(());
                 }
                 return Err(Stop::mismatch(
-                    "another answer came than expected",
+                    format!(
+                        "another answer came than expected ({})",
+                        expected_pdu_words(&pattern.0)
+                    ),
                     pattern.0.to_string(),
                     show_bytes(&answer.pdu),
                     if is_exception(answer) {
@@ -171,7 +177,7 @@ fn written_registers(request: &ModbusRequest) -> Option<(u16, u16)> {
 fn check_shape(request: &ModbusRequest, sent: &[u8], answer: &Answer) -> Result<Vec<u16>, Stop> {
     let malformed = |expected: String| {
         Stop::mismatch(
-            "the answer does not have the shape of its function",
+            format!("the answer does not have the shape of its function ({expected})"),
             expected,
             show_bytes(&answer.pdu),
             Came::Answer,
@@ -195,11 +201,13 @@ fn check_shape(request: &ModbusRequest, sent: &[u8], answer: &Answer) -> Result<
                         .collect())
                 }
                 _ => Err(malformed(format!(
-                    "{function:02X} {bytes:02X} and {bytes} bytes"
+                    "function {function:02X}h, byte count {bytes} and as many bytes"
                 ))),
             }
         }
-        ModbusRequest::WriteSingle { .. } if answer.pdu != sent => Err(malformed(show_bytes(sent))),
+        ModbusRequest::WriteSingle { .. } if answer.pdu != sent => {
+            Err(malformed(format!("the echo of {}", show_bytes(sent))))
+        }
         ModbusRequest::WriteMultiple { .. } if Some(answer.pdu.as_slice()) != sent.get(..5) => {
             Err(malformed(show_bytes(sent.get(..5).unwrap_or_default())))
         }
@@ -227,7 +235,7 @@ fn check_registers(expected: &[Number], came: &[u16], saved: &Saved) -> Result<(
             .collect();
         words.join(", ")
     };
-    Err(Stop::mismatch(
+    Err(Stop::differs(
         "the registers hold something else",
         show_all(&expected),
         show_all(came),
@@ -250,7 +258,7 @@ fn check_exception(codes: &[u8], request: &[u8], answer: &Answer) -> Result<(), 
             if codes.contains(exception) {
                 Ok(())
             } else {
-                Err(Stop::mismatch(
+                Err(Stop::differs(
                     "the request is refused with another exception",
                     expected,
                     show_exception(answer),
@@ -265,7 +273,7 @@ fn check_exception(codes: &[u8], request: &[u8], answer: &Answer) -> Result<(), 
             Came::Answer,
         )),
         _ => Err(Stop::mismatch(
-            "the request is not refused",
+            format!("the request is not refused ({expected} expected)"),
             expected,
             show_bytes(&answer.pdu),
             Came::Answer,

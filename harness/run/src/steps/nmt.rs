@@ -35,13 +35,19 @@ impl Tester<'_> {
                 NodeId::new(node).ok_or_else(|| Stop::Bench(format!("{node} is not a node-ID")))?,
             ),
         };
-        self.send_frame(NmtMessage { command, node }.encode())
+        let frame = NmtMessage { command, node }.encode();
+        self.send_frame(frame)?;
+        self.history.add(self.sent_words(&frame));
+        Ok(())
     }
 
     pub(super) fn nmt_enter(&mut self, target: NmtState) -> Result<(), Stop> {
-        self.command_into(target)?;
+        let command = self.command_into(target)?;
         match self.observe_state(target, self.device.timing.nmt_transition)? {
-            Observed::Is | Observed::CannotTell => Ok(()),
+            Observed::Is | Observed::CannotTell => {
+                self.history.add(describe_frame(&command));
+                Ok(())
+            }
             Observed::Not(actual) => Err(Stop::undecided(
                 format!("the node could not be brought into {}", name(target)),
                 name(target),
@@ -50,14 +56,16 @@ impl Tester<'_> {
         }
     }
 
-    pub(crate) fn command_into(&mut self, target: NmtState) -> Result<(), Stop> {
+    pub(crate) fn command_into(&mut self, target: NmtState) -> Result<Frame, Stop> {
         let command = match target {
             NmtState::PreOperational => Command::EnterPreOperational,
             NmtState::Operational => Command::Start,
             NmtState::Stopped => Command::Stop,
         };
         let node = Some(self.node_id()?);
-        self.send_frame(NmtMessage { command, node }.encode())
+        let frame = NmtMessage { command, node }.encode();
+        self.send_frame(frame)?;
+        Ok(frame)
     }
 
     pub(super) fn expect_state(&mut self, step: &ExpectState) -> Result<(), Stop> {
@@ -65,7 +73,7 @@ impl Tester<'_> {
         match self.observe_state(step.is, within)? {
             Observed::Is => Ok(()),
             Observed::Not(actual) => Err(Stop::mismatch(
-                format!("the node is not {}", name(step.is)),
+                format!("the node is not {}: {actual}", name(step.is)),
                 name(step.is),
                 actual,
                 Came::Other,
@@ -211,7 +219,11 @@ impl Tester<'_> {
         let expected = format!("{:03X}#00 within {}", id.raw(), show(within));
         let Some((frame, received)) = self.first_but_heartbeats(Id::Standard(id), within)? else {
             return Err(Stop::mismatch(
-                "no boot-up message came",
+                format!(
+                    "no boot-up message of node {node} ({:03X}h) came{}",
+                    id.raw(),
+                    self.but_another_booted()
+                ),
                 expected,
                 "nothing",
                 Came::Silence,
@@ -232,6 +244,20 @@ impl Tester<'_> {
         self.node = Some(node);
         self.watch.booted(received.at);
         Ok(())
+    }
+
+    /// `, but node-ID 85 booted`, if another than the expected one did.
+    pub(super) fn but_another_booted(&self) -> String {
+        let booted = self.session.look_for(|received| match &received.message {
+            Message::Can(frame) if frame.bytes() == [0] => {
+                match frame.standard_id().and_then(identify)? {
+                    (Service::ErrorControl, node) => node,
+                    _ => None,
+                }
+            }
+            _ => None,
+        });
+        booted.map_or_else(String::new, |node| format!(", but node-ID {node} booted"))
     }
 
     /// The first frame with this identifier, heartbeats that were waiting for the bus left aside.
@@ -277,8 +303,9 @@ impl Tester<'_> {
             if frame.bytes() != [expected.code()] {
                 return Err(Stop::mismatch(
                     format!(
-                        "the heartbeat carries another state than {}",
-                        name(step.state)
+                        "the heartbeat carries another state than {}: {}",
+                        name(step.state),
+                        describe_frame(&frame)
                     ),
                     format!("{:02X}h ({})", expected.code(), name(step.state)),
                     frame.to_string(),

@@ -6,6 +6,7 @@ use fieldproof_can::{Frame, Id, StandardId};
 use fieldproof_link::Instant;
 use fieldproof_suite::model::{Carried, ExpectTpdo, PdoName, SendRpdo, StartSync, Sync};
 use fieldproof_wire::canopen::{PdoNumber, Service, cob_id};
+use fieldproof_wire::describe::describe_frame;
 
 use crate::companions::SyncProducer;
 use crate::limits::show;
@@ -29,6 +30,7 @@ impl Tester<'_> {
             self.session.send_frame_at(port, at, frame)?;
             at = at + step.period;
         }
+        self.history.add(describe_frame(&frame));
         Ok(())
     }
 
@@ -40,6 +42,8 @@ impl Tester<'_> {
         let producer = SyncProducer::new(line, now, step.period);
         self.sync_period = Some(step.period);
         self.sync_producer = Some(self.session.lane().attach(port, Box::new(producer)));
+        self.history
+            .add(format!("SYNC every {}", show(step.period)));
         Ok(())
     }
 
@@ -132,7 +136,10 @@ impl Tester<'_> {
             });
             if between != syncs as usize {
                 return Err(Stop::mismatch(
-                    format!("{} comes with another SYNC", show_pdo(step.pdo)),
+                    format!(
+                        "{} comes after {between} SYNCs, and not after {syncs}",
+                        show_pdo(step.pdo)
+                    ),
                     format!("after {syncs} SYNCs"),
                     format!("after {between}"),
                     Came::Frame(frame),
@@ -154,7 +161,9 @@ impl Tester<'_> {
         };
         let frame = Frame::data(id, &data)
             .ok_or_else(|| Stop::Bench("a PDO holds at most 8 bytes".into()))?;
-        self.send_frame(frame)
+        self.send_frame(frame)?;
+        self.history.add(describe_frame(&frame));
+        Ok(())
     }
 }
 
@@ -188,7 +197,7 @@ fn show_pdo(pdo: PdoName) -> String {
 
 fn check_pdo(step: &ExpectTpdo, expected: &[u8], frame: &Frame) -> Result<(), Stop> {
     if !step.carries.is_empty() && frame.bytes() != expected {
-        return Err(Stop::mismatch(
+        return Err(Stop::differs(
             format!("{} carries something else", show_pdo(step.pdo)),
             show_bytes(expected),
             show_bytes(frame.bytes()),
@@ -198,7 +207,7 @@ fn check_pdo(step: &ExpectTpdo, expected: &[u8], frame: &Frame) -> Result<(), St
     if let Some(pattern) = &step.data
         && !pattern.0.matches(frame.bytes())
     {
-        return Err(Stop::mismatch(
+        return Err(Stop::differs(
             format!("{} carries something else", show_pdo(step.pdo)),
             pattern.0.to_string(),
             show_bytes(frame.bytes()),

@@ -8,7 +8,7 @@ use fieldproof_suite::model::{
 use fieldproof_wire::canopen::{AbortCode, Multiplexer};
 
 use crate::modbus::show_bytes;
-use crate::sdo::{Only, Outcome, Uploaded, show_abort};
+use crate::sdo::{Only, Outcome, Protocol, Uploaded, show_abort};
 use crate::sdo_block::Ended;
 use crate::stop::{Came, Stop};
 use crate::tester::Tester;
@@ -45,23 +45,28 @@ impl Tester<'_> {
             Ended::GivenUp => return Ok(()),
         };
         let bytes = value.of_size(size(step.value_type));
-        let Some(actual) = decode(step.value_type, bytes) else {
-            return Err(Stop::mismatch(
-                format!("{object} has another size"),
-                format!("{} bytes", size(step.value_type).unwrap_or_default()),
-                format!("{} bytes: {}", bytes.len(), show_bytes(bytes)),
-                Came::Other,
-            ));
-        };
         if let ReadExpectation::Abort(abort) = &step.expect {
+            let actual = decode(step.value_type, bytes).unwrap_or(Actual::Bytes(bytes.to_vec()));
             return Err(Stop::mismatch(
-                format!("reading {object} is not refused"),
+                format!(
+                    "reading {object} is not refused: {} expected",
+                    self.show_accepted(abort)
+                ),
                 self.show_accepted(abort),
                 actual.to_string(),
                 came(&actual),
             ));
         }
-        self.check_read(object, &step.expect, &actual)?;
+        let Some(actual) = decode(step.value_type, bytes) else {
+            return Err(Stop::differs(
+                format!("{object} has another size"),
+                show_size(size(step.value_type).unwrap_or_default()),
+                format!("{}: {}", show_size(bytes.len()), show_bytes(bytes)),
+                Came::Other,
+            ));
+        };
+        let by = value.protocol.words();
+        self.check_read(object, by, &step.expect, &actual)?;
         if let Some(words) = &step.observe {
             self.observe(words, actual.to_string());
         }
@@ -122,7 +127,7 @@ impl Tester<'_> {
                 Ok(())
             }
             _ => Err(Stop::mismatch(
-                format!("reading {object} is refused"),
+                format!("reading {object} is refused: {}", show_abort(code)),
                 "a value",
                 show_abort(code),
                 Came::Abort(code.0),
@@ -134,21 +139,49 @@ impl Tester<'_> {
         let object = self.resolve(step.object)?;
         let within = step.within.unwrap_or(self.device.timing.sdo_response);
         let bytes = encode(step.value_type, &step.value, step.unit, &self.saved)?;
+        let by = protocol_words(step.transfer);
         let before = self.value_before(object, bytes.len())?;
         let is_remembered = self.remember_object(object, &before);
         let outcome = match self.download_by(object, &bytes, step.transfer, within)? {
             Ended::With(outcome) => outcome,
-            Ended::GivenUp => return self.check_remembered(object, &before),
+            Ended::GivenUp => {
+                self.history
+                    .add(format!("SDO write {object}{by}, given up by the tester"));
+                return self.check_remembered(object, &before);
+            }
         };
         if let Outcome::Refused(_) = outcome
             && is_remembered
         {
             self.undo.forget_last();
         }
+        let end = match outcome {
+            Outcome::Done(()) => "",
+            Outcome::Refused(_) => ", which was refused",
+        };
+        self.judge_write(step, object, &bytes, before, outcome)?;
+        let value = match decode(step.value_type, &bytes) {
+            Some(value @ (Actual::Number(_) | Actual::Text(_))) => value.to_string(),
+            _ => show_size(bytes.len()),
+        };
+        self.history
+            .add(format!("SDO write {object} = {value}{by}{end}"));
+        Ok(())
+    }
+
+    fn judge_write(
+        &mut self,
+        step: &SdoWrite,
+        object: Multiplexer,
+        bytes: &[u8],
+        before: Option<Vec<u8>>,
+        outcome: Outcome<()>,
+    ) -> Result<(), Stop> {
+        let within = step.within.unwrap_or(self.device.timing.sdo_response);
         match (&step.expect, outcome) {
             (WriteExpectation::Ok, Outcome::Done(())) => self.check_remembered(object, &before),
             (WriteExpectation::Ok, Outcome::Refused(code)) => Err(Stop::mismatch(
-                format!("writing {object} is refused"),
+                format!("writing {object} is refused: {}", show_abort(code)),
                 "it is accepted",
                 show_abort(code),
                 Came::Abort(code.0),
@@ -158,7 +191,7 @@ impl Tester<'_> {
             }
             (WriteExpectation::Either(_), Outcome::Done(())) => {
                 self.check_remembered(object, &before)?;
-                self.check_holds(object, &bytes, "it was accepted", within)
+                self.check_holds(object, bytes, "it was accepted", within)
             }
             (WriteExpectation::Either(abort), Outcome::Refused(code)) => {
                 self.check_abort(object, abort, code)?;
@@ -168,7 +201,11 @@ impl Tester<'_> {
                 }
             }
             (WriteExpectation::Abort(abort), Outcome::Done(())) => Err(Stop::mismatch(
-                format!("writing {object} is not refused"),
+                format!(
+                    "writing {object}{} is not refused: {} expected",
+                    protocol_words(step.transfer),
+                    self.show_accepted(abort)
+                ),
                 self.show_accepted(abort),
                 "it is accepted",
                 Came::Answer,
@@ -198,7 +235,7 @@ impl Tester<'_> {
         if held == expected {
             return Ok(());
         }
-        Err(Stop::mismatch(
+        Err(Stop::differs(
             format!("{object} does not hold what the answer to the write said"),
             format!("{}, for {because}", show_bytes(expected)),
             show_bytes(&held),
@@ -219,7 +256,7 @@ impl Tester<'_> {
         if passes {
             return Ok(());
         }
-        Err(Stop::mismatch(
+        Err(Stop::differs(
             format!("{object} is refused with another abort code"),
             self.show_accepted(expected),
             show_abort(code),
@@ -242,15 +279,16 @@ impl Tester<'_> {
     fn check_read(
         &self,
         object: Multiplexer,
+        by: &str,
         expect: &ReadExpectation,
         actual: &Actual,
     ) -> Result<(), Stop> {
         let saved = &self.saved;
         let wrong = |expected: String| {
-            Err(Stop::mismatch(
-                format!("{object} holds another value"),
+            Err(Stop::differs(
+                format!("{object}{by} holds another value"),
                 expected,
-                actual.to_string(),
+                actual,
                 came(actual),
             ))
         };
@@ -263,9 +301,12 @@ impl Tester<'_> {
                 }
                 match first_difference(&expected, actual) {
                     None => wrong(expected.to_string()),
-                    Some(place) => wrong(expected.to_string()).map_err(|stop| {
-                        stop.with_note(format!("they differ from byte {place} on"))
-                    }),
+                    Some(place) => Err(Stop::mismatch(
+                        format!("{object}{by} holds another value from byte {place} on"),
+                        expected.to_string(),
+                        actual.to_string(),
+                        came(actual),
+                    )),
                 }
             }
             ReadExpectation::OneOf(values) | ReadExpectation::OneOfOrAbort(values, _) => {
@@ -281,10 +322,15 @@ impl Tester<'_> {
             }
             ReadExpectation::OtherThan(value) => {
                 let unwanted = resolve(value, None, saved)?;
-                if unwanted == *actual {
-                    return wrong(format!("any but {unwanted}"));
+                if unwanted != *actual {
+                    return Ok(());
                 }
-                Ok(())
+                Err(Stop::mismatch(
+                    format!("{object} holds {actual}, which it must not"),
+                    format!("any but {unwanted}"),
+                    actual.to_string(),
+                    came(actual),
+                ))
             }
             ReadExpectation::Claimed(claim) => match self.device.identity.claimed(*claim) {
                 None => Err(Stop::Bench(format!(
@@ -307,6 +353,22 @@ impl Tester<'_> {
                 _ => wrong(format!("{from} to {to}")),
             },
         }
+    }
+}
+
+fn show_size(bytes: usize) -> String {
+    match bytes {
+        1 => "1 byte".to_owned(),
+        _ => format!("{bytes} bytes"),
+    }
+}
+
+/// By which protocol a value is to be written, where the step says it.
+const fn protocol_words(transfer: Option<Transfer>) -> &'static str {
+    match transfer {
+        None | Some(Transfer::Expedited) => "",
+        Some(Transfer::Segmented) => Protocol::Segmented.words(),
+        Some(Transfer::Block(_)) => Protocol::Block.words(),
     }
 }
 

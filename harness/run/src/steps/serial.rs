@@ -11,6 +11,7 @@ use fieldproof_wire::modbus::crc16_bytes;
 
 use crate::limits::show;
 use crate::modbus::show_bytes;
+use crate::modbus_words::expected_words;
 use crate::session::Message;
 use crate::stop::{Came, Stop};
 use crate::tester::{LATE_ANSWER, SERIAL, Tester};
@@ -23,6 +24,14 @@ impl Tester<'_> {
         for piece in &step.then {
             bytes.extend(with_crc(&piece.bytes.0, piece.crc)?);
         }
+        let mut words = self.request_words(port, &bytes);
+        if step.spoil.is_some() {
+            words.push_str(", with a wrong parity bit");
+        }
+        if step.pause.is_some() {
+            words.push_str(", with a silence inside");
+        }
+        self.history.add(words);
         let mut characters: Vec<Character> = bytes.into_iter().map(Character::new).collect();
         if let Some(place) = step.spoil {
             self.spoil(port, &mut characters, usize::from(place))?;
@@ -128,6 +137,7 @@ impl Tester<'_> {
         if self.session.port(name).is_some() {
             return Err(Stop::Bench(format!("there is a port {name:?} already")));
         }
+        self.history.add(format!("opening connection {name}"));
         match self.session.connect(port, name) {
             Err(Stop::Link(error)) => Err(Stop::mismatch(
                 "the device takes no further connection",
@@ -145,6 +155,9 @@ impl Tester<'_> {
             true => Farewell::Reset,
             false => Farewell::Close,
         };
+        let how_words = if step.reset { "resetting" } else { "closing" };
+        self.history
+            .add(format!("{how_words} connection {}", step.name));
         self.session.disconnect(port, how)
     }
 
@@ -162,19 +175,15 @@ impl Tester<'_> {
             let late = self
                 .session
                 .first(deadline, |received| received.port == port)?;
-            let actual = late.map_or_else(
-                || "nothing".to_owned(),
-                |late| {
-                    format!(
-                        "it came after {}",
-                        show(late.start.since(self.session.last_sent().end))
-                    )
-                },
-            );
+            let expected = format!("{expected} within {}", show(within));
+            let Some(late) = late else {
+                return Err(self.no_answer(port, expected));
+            };
+            let after = show(late.start.since(self.session.last_sent().end));
             return Err(Stop::mismatch(
-                "no answer came in time",
-                format!("{expected} within {}", show(within)),
-                actual,
+                format!("the answer came too late, after {after}"),
+                expected,
+                format!("it came after {after}"),
                 Came::Silence,
             ));
         };
@@ -185,7 +194,7 @@ impl Tester<'_> {
         });
         let mut patterns = std::iter::once(expected).chain(patterns);
         let Some(expected) = patterns.find(|it| !spoilt && it.matches(&bytes)) else {
-            return Err(wrong_bytes(step, &bytes, spoilt));
+            return Err(wrong_bytes(step, &bytes, spoilt, self.is_modbus_tcp(port)));
         };
         if self.session.serial_settings(port).is_some() {
             check_open_crc(expected, &bytes)?;
@@ -217,14 +226,17 @@ fn blurred_limit(
     })
 }
 
-fn wrong_bytes(step: &ExpectBytes, bytes: &[u8], spoilt: bool) -> Stop {
+fn wrong_bytes(step: &ExpectBytes, bytes: &[u8], spoilt: bool, is_tcp: bool) -> Stop {
     let expected = &step.bytes.0;
     let came = match bytes {
         [_, function, code, _, _] if function & 0x80 != 0 => Came::Exception(*code),
         _ => Came::Answer,
     };
     let stop = Stop::mismatch(
-        "another answer came than expected",
+        format!(
+            "another answer came than expected ({})",
+            expected_words(expected, is_tcp)
+        ),
         expected.to_string(),
         show_bytes(bytes),
         came,

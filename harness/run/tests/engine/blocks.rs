@@ -48,15 +48,15 @@ fn a_right_upload_passes_and_a_wrong_one_says_what_is_wrong() {
     let wrong: [(&'static [(&str, &str)], &str); 6] = [
         (
             &[("581#D9CC5D0000000000", "581#D9CD5D0000000000")],
-            "the CRC of the upload is wrong",
+            "the CRC of the upload is wrong: 5DCDh, and not 5DCCh",
         ),
         (
             &[("581#D9CC5D0000000000", "581#D5CC5D0000000000")],
-            "the blocks do not carry as many bytes as the server announced",
+            "the blocks do not carry as many bytes as the server announced: 9 bytes, and not 8 bytes",
         ),
         (
             &[("581#8279000000000000", "581#8379000000000000")],
-            "the segments of the block are not in order",
+            "the segments of the block are not in order: segment 3 (581#8379000000000000), and not segment 2",
         ),
         (
             &[("581#8279000000000000", "")],
@@ -64,7 +64,7 @@ fn a_right_upload_passes_and_a_wrong_one_says_what_is_wrong() {
         ),
         (
             &[("581#8279000000000000", "581#8008100000000405")],
-            "reading 1008h:00 is refused",
+            "reading 1008h:00 is refused: 05040000h (SDO transfer timed out)",
         ),
         (
             &[("581#C608100008000000", "581#C609100008000000")],

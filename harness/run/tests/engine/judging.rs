@@ -40,7 +40,7 @@ fn a_wrong_value_fails_and_shows_the_frames() {
     let played = Setup::default().play(answering(&["581#4300200006000000"]), READ);
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "2000h:00 holds another value")
+        (Verdict::Fail, "2000h:00 holds another value: 6, and not 5")
     );
     let case = played.case();
     assert_eq!(case.failures[0].expected, "5");
@@ -61,7 +61,7 @@ fn any_value_but_one_passes() {
     let played = Setup::default().play(answering(&["581#4300200005000000"]), &case);
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "2000h:00 holds another value")
+        (Verdict::Fail, "2000h:00 holds 5, which it must not")
     );
     assert_eq!(played.case().failures[0].expected, "any but 5");
 }
@@ -166,7 +166,7 @@ fn late_and_never_are_told_apart() {
         late.verdict(),
         (
             Verdict::Fail,
-            "no SDO response for 2000h:00 (581h) came in time"
+            "no SDO response for 2000h:00 (581h) came in time, after SDO read 2000h:00"
         )
     );
     assert!(
@@ -208,7 +208,7 @@ fn a_measurement_across_its_limit_decides_nothing() {
         played.verdict(),
         (
             Verdict::Inconclusive,
-            "SDO response time cannot be decided on this link"
+            "SDO response time cannot be decided on this link, after SDO read 2000h:00"
         )
     );
 }
@@ -240,7 +240,7 @@ fn an_expectation_does_not_look_past_the_last_send() {
         played.verdict(),
         (
             Verdict::Fail,
-            "no SDO response for 2000h:00 (581h) came in time"
+            "no SDO response for 2000h:00 (581h) came in time, after SDO read 2000h:00, then SDO read 3000h:00"
         )
     );
 }
@@ -262,7 +262,10 @@ fn a_control_that_does_not_pass_leaves_the_question_open() {
     );
     assert_eq!(
         played.verdict(),
-        (Verdict::Inconclusive, "reading 2000h:00 is refused")
+        (
+            Verdict::Inconclusive,
+            "reading 2000h:00 is refused: 06020000h (object does not exist)"
+        )
     );
 }
 
@@ -348,7 +351,7 @@ fn a_heartbeat_with_a_state_the_node_was_not_told_fails() {
     let played = setup.play(device(), cases);
     assert_eq!(
         played.verdict().1,
-        "an unexpected error control message came: heartbeat operational"
+        "an unexpected error control message came: heartbeat operational, after SDO write 1017h:00 = 10 (Ah), then NMT stop node 1"
     );
 }
 
@@ -381,7 +384,7 @@ fn a_repetition_ends_with_the_first_time_that_does_not_pass_and_points_inside() 
     );
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "2000h:00 holds another value")
+        (Verdict::Fail, "2000h:00 holds another value: 6, and not 5")
     );
     assert!(played.case().failures[0].place.text.contains("sdo-read"));
     let steps = played
@@ -421,7 +424,7 @@ fn a_repetition_counts() {
     );
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "2000h:00 holds another value")
+        (Verdict::Fail, "2000h:00 holds another value: 8, and not 9")
     );
     let failure = &played.case().failures[0];
     assert_eq!(
@@ -441,11 +444,19 @@ fn a_value_or_a_refusal_is_expected() {
         ("581#8000200024000008", (Verdict::Pass, "")),
         (
             "581#4300200006000000",
-            (Verdict::Fail, "2000h:00 holds another value"),
+            (
+                Verdict::Fail,
+                "2000h:00 holds another value: 6, and not one of 0, 5",
+            ),
         ),
         (
             "581#8000200022000008",
-            (Verdict::Fail, "2000h:00 is refused with another abort code"),
+            (
+                Verdict::Fail,
+                "2000h:00 is refused with another abort code: \
+                 08000022h (data cannot be passed on in the present device state), \
+                 and not abort 08000024h (no data available) or 08000000h (general error)",
+            ),
         ),
     ] {
         let device = Scripted::new(move |request: &Frame| {
@@ -496,12 +507,16 @@ fn periods_of_frames_are_measured() {
         verdict([10, 20, 30, 40], "080#01"),
         (
             Verdict::Fail,
-            "another frame came than expected: SYNC 1".to_owned()
+            "another frame came than expected: SYNC 1; expected: SYNC, after NMT start all nodes"
+                .to_owned()
         )
     );
     assert_eq!(
         verdict([10, 20, 30, 90], "080#"),
-        (Verdict::Fail, "080h stops".to_owned())
+        (
+            Verdict::Fail,
+            "080h stops, after NMT start all nodes".to_owned()
+        )
     );
 }
 
@@ -519,7 +534,10 @@ fn an_answer_that_leaves_its_size_open_is_read_with_the_size_of_the_object() {
     );
     assert_eq!(
         played.verdict(),
-        (Verdict::Fail, "2000h:00 has another size")
+        (
+            Verdict::Fail,
+            "2000h:00 has another size: 4 bytes: 05 00 00 00, and not 1 byte"
+        )
     );
 }
 
@@ -548,7 +566,7 @@ fn a_transfer_that_goes_wrong_half_way_is_aborted() {
     );
     assert_eq!(
         played.verdict().1,
-        "the toggle bit of the segment is not that of the request"
+        "the toggle bit of the segment is not that of the request: toggle 0, and not toggle 1"
     );
     assert_eq!(
         seen.lock().unwrap().last().map(String::as_str),

@@ -47,11 +47,14 @@ fn syncs_between_pdos_are_counted_exactly() {
         (played.verdict().0, played.verdict().1.to_owned())
     };
     assert_eq!(verdict(&[3]), (Verdict::Pass, String::new()));
-    let wrong = "TPDO1 comes with another SYNC".to_owned();
-    assert_eq!(verdict(&[3, 3, 2]), (Verdict::Fail, wrong.clone()));
-    assert_eq!(verdict(&[3, 3, 3, 4]), (Verdict::Fail, wrong));
-    let stops = "TPDO1 stops".to_owned();
-    assert_eq!(verdict(&[3, 9]), (Verdict::Fail, stops));
+    for (distances, wrong) in [
+        (&[3, 3, 2][..], "TPDO1 comes after 2 SYNCs, and not after 3"),
+        (&[3, 3, 3, 4], "TPDO1 comes after 4 SYNCs, and not after 3"),
+        (&[3, 9], "TPDO1 stops"),
+    ] {
+        let wrong = format!("{wrong}, after SYNC every 10 ms");
+        assert_eq!(verdict(distances), (Verdict::Fail, wrong));
+    }
 }
 
 #[test]
@@ -126,6 +129,7 @@ fn a_value_that_may_be_refused_must_be_taken_or_left() {
     let stored = Setup::default().play(taking(Some(refused), true), OPTIONAL);
     assert_eq!(
         stored.case().failures[0].what,
-        "2000h:00 does not hold what the answer to the write said"
+        "2000h:00 does not hold what the answer to the write said: \
+         09 00 00 00, and not 05 00 00 00, for it was refused"
     );
 }

@@ -1,6 +1,6 @@
 //! CAN frames by the predefined connection set.
 
-use fieldproof_can::Frame;
+use fieldproof_can::{Frame, Id};
 
 use super::spaced;
 use crate::Violation;
@@ -19,7 +19,11 @@ use crate::violation::plural;
 /// transfer is running is not known, so segments of a block read as whatever their first byte is elsewhere.
 pub fn describe_frame(frame: &Frame) -> String {
     let Some((service, node)) = frame.standard_id().and_then(identify) else {
-        return format!("no predefined service on {}h", frame.id());
+        let id = frame.id();
+        return match id {
+            Id::Standard(_) => format!("no predefined service on {id}h"),
+            Id::Extended(_) => format!("extended frame {id}h, which is no service"),
+        };
     };
     let described = match service {
         Service::Nmt => NmtMessage::parse(frame).map(nmt),
@@ -49,7 +53,7 @@ fn checked<T>(
             found,
             expected,
             ..
-        }) => format!("{line}, byte {offset} {found} instead of {expected}"),
+        }) => format!("{line}, reserved byte {offset} {found} instead of {expected}"),
     })
 }
 
@@ -66,13 +70,37 @@ fn sdo_frame(frame: &Frame, service: Service) -> Result<String, Violation> {
 
 fn lss_frame(frame: &Frame, service: Service) -> Result<String, Violation> {
     let bytes = broadcast(frame, service)?;
-    if service == Service::LssRequest {
+    let described = if service == Service::LssRequest {
         let check = lss::Request::check_reserved;
         checked(bytes, lss::Request::parse_bytes, check, lss_request)
     } else {
         let check = lss::Response::check_reserved;
         checked(bytes, lss::Response::parse_bytes, check, lss_response)
+    };
+    match (described, bytes.first().copied().and_then(lss_command)) {
+        (Err(violation), Some(command)) => {
+            Ok(format!("malformed {service}, {command}: {violation}"))
+        }
+        (described, _) => described,
     }
+}
+
+/// What a command specifier is called.
+const fn lss_command(specifier: u8) -> Option<&'static str> {
+    Some(match specifier {
+        0x04 => "switch state global",
+        0x11 => "configure node-ID",
+        0x13 => "configure bit timing",
+        0x15 => "activate bit timing",
+        0x17 => "store configuration",
+        0x40..=0x44 => "switch state selective",
+        0x46..=0x4B | 0x4F => "identify remote slave",
+        0x4C | 0x50 => "identify non-configured remote slave",
+        0x51 => "fastscan",
+        0x5A..=0x5D => "inquire identity",
+        0x5E => "inquire node-ID",
+        _ => return None,
+    })
 }
 
 fn nmt(message: NmtMessage) -> String {
@@ -336,7 +364,7 @@ mod tests {
             ("581#4363600013D1FFFF", "SDO value 6063h:00 = FFFFD113h"),
             ("601#2F60600001000000", "SDO write 6060h:00 = 01h"),
             ("601#2260600001000000", "SDO write 6060h:00 = 01 00 00 00, size not given"),
-            ("581#607A6000A0860100", "SDO written 607Ah:00, byte 4 A0h instead of 00h"),
+            ("581#607A6000A0860100", "SDO written 607Ah:00, reserved byte 4 A0h instead of 00h"),
             ("581#8041600011000906", "SDO abort 6041h:00 06090011h sub-index does not exist"),
             ("581#410810000A000000", "SDO value 1008h:00 in segments, 10 bytes"),
             ("601#7000000000000000", "SDO read next segment, toggle 1"),
@@ -348,7 +376,7 @@ mod tests {
             ("601#E000000000000000", "malformed SDO request: command: found E0h at byte 0, expected a client command specifier from 0 to 6 in bits 7..5"),
             ("581#60", "malformed SDO response: length: found 1 byte, expected 8 bytes"),
             ("601#R8", "malformed SDO request: kind of frame: found a remote frame, expected a data frame"),
-            ("7E4#4400000000000009", "LSS selected, in configuration, byte 7 09h instead of 00h"),
+            ("7E4#4400000000000009", "LSS selected, in configuration, reserved byte 7 09h instead of 00h"),
             ("7E5#0401000000000000", "LSS switch all to configuration"),
             ("7E5#1105000000000000", "LSS configure node-ID 5"),
             ("7E4#1101000000000000", "LSS configure node-ID: error 1"),
@@ -359,7 +387,7 @@ mod tests {
             ("7E5#513C0600001F0001", "LSS fastscan, vendor-ID 0000063Ch from bit 31"),
             ("7E5#4B01000000000000", "LSS identify, highest serial number 00000001h"),
             ("780#", "no predefined service on 780h"),
-            ("00000601#40", "no predefined service on 00000601h"),
+            ("00000601#40", "extended frame 00000601h, which is no service"),
         ];
         for (text, line) in cases {
             assert_eq!(describe_frame(&text.parse().unwrap()), line, "{text}");

@@ -3,7 +3,7 @@
 use crate::modbus::pdu::DeviceIdentification;
 use crate::modbus::rtu::RtuAdu;
 use crate::modbus::tcp::{HEADER_LEN, RawTcp, TcpAdu};
-use crate::modbus::{Request, Response};
+use crate::modbus::{FunctionCode, Request, Response};
 use crate::violation::plural;
 use crate::{Rule, Violation};
 
@@ -42,10 +42,61 @@ fn describe_pdu(pdu: &[u8], at: usize, direction: Direction) -> Result<String, V
         Direction::Request => Request::parse(pdu).map(|request| describe_request(&request)),
         Direction::Response => Response::parse(pdu).map(|response| describe_response(&response)),
     };
-    line.map_err(|violation| Violation {
-        offset: violation.offset + at,
-        ..violation
-    })
+    let violation = match line {
+        Ok(line) => return Ok(line),
+        Err(violation) => Violation {
+            offset: violation.offset + at,
+            ..violation
+        },
+    };
+    match (direction, pdu.first()) {
+        (Direction::Request, Some(function)) => Ok(format!(
+            "{}, {}",
+            describe_function(FunctionCode(*function)),
+            malformed(violation)
+        )),
+        _ => Err(violation),
+    }
+}
+
+/// `diagnostics, sub-function 000Bh (bus message count): 0000h`
+fn describe_diagnostics(sub_function: u16, data: &[u16]) -> String {
+    let name = match sub_function {
+        0x00 => " (return query data)",
+        0x01 => " (restart communications)",
+        0x02 => " (return diagnostic register)",
+        0x03 => " (change ASCII delimiter)",
+        0x04 => " (force listen only mode)",
+        0x0A => " (clear counters)",
+        0x0B => " (bus message count)",
+        0x0C => " (bus communication error count)",
+        0x0D => " (bus exception error count)",
+        0x0E => " (server message count)",
+        0x0F => " (server no response count)",
+        0x10 => " (server NAK count)",
+        0x11 => " (server busy count)",
+        0x12 => " (bus character overrun count)",
+        0x14 => " (clear overrun counter)",
+        _ => "",
+    };
+    let data = registers(data);
+    format!("diagnostics, sub-function {sub_function:04X}h{name}: {data}")
+}
+
+/// `function 41h: 07 08`, `read exception status`
+fn describe_other(function: FunctionCode, data: &[u8]) -> String {
+    let name = describe_function(function);
+    match data {
+        [] => name,
+        data => format!("{name}: {}", spaced(data)),
+    }
+}
+
+fn describe_function(function: FunctionCode) -> String {
+    match function.name() {
+        Some(name) => name.to_owned(),
+        None => format!("function {function}"),
+    }
 }
 
 fn malformed(violation: Violation) -> String {
@@ -76,9 +127,7 @@ fn describe_request(request: &Request) -> String {
         Request::WriteSingleRegister { address, value } => {
             format!("write register {address:04X}h = {value:04X}h")
         }
-        Request::Diagnostics { sub_function, data } => {
-            format!("diagnostics {sub_function:04X}h: {}", registers(data))
-        }
+        Request::Diagnostics { sub_function, data } => describe_diagnostics(*sub_function, data),
         Request::GetCommEventCounter => "get communication event counter".into(),
         Request::WriteMultipleCoils { start, values } => format!(
             "write {} from {start:04X}h: {}",
@@ -96,7 +145,7 @@ fn describe_request(request: &Request) -> String {
             write_start,
             values,
         } => format!(
-            "{}, then {}",
+            "read/write multiple: {}, then {}",
             write_registers(*write_start, values),
             read(read_quantity.raw(), "register", *read_start)
         ),
@@ -104,7 +153,7 @@ fn describe_request(request: &Request) -> String {
             "read device identification, code {:02X}h from object {object:02X}h",
             read.code()
         ),
-        Request::Other { function, data } => format!("function {function}: {}", spaced(data)),
+        Request::Other { function, data } => describe_other(*function, data),
     }
 }
 
@@ -127,9 +176,7 @@ fn describe_response(response: &Response) -> String {
         Response::WriteSingleRegister { address, value } => {
             format!("register {address:04X}h written = {value:04X}h")
         }
-        Response::Diagnostics { sub_function, data } => {
-            format!("diagnostics {sub_function:04X}h: {}", registers(data))
-        }
+        Response::Diagnostics { sub_function, data } => describe_diagnostics(*sub_function, data),
         Response::GetCommEventCounter { status, count } => {
             format!("communication event counter {count}, status {status:04X}h")
         }
@@ -147,7 +194,7 @@ fn describe_response(response: &Response) -> String {
             describe_identification(identification)
         }
         Response::Exception { code, .. } => format!("exception {code}"),
-        Response::Other { function, data } => format!("function {function}: {}", spaced(data)),
+        Response::Other { function, data } => describe_other(*function, data),
     }
 }
 
@@ -186,10 +233,17 @@ fn on_off(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }
 
+/// So many registers are shown of a long row.
+const MOST_REGISTERS: usize = 16;
+
 /// `01F4h 03E8h`
 fn registers(values: &[u16]) -> String {
-    let values: Vec<String> = values.iter().map(|value| format!("{value:04X}h")).collect();
-    values.join(" ")
+    let (shown, more) = match values.get(..MOST_REGISTERS) {
+        Some(shown) if values.len() > MOST_REGISTERS => (shown, " .."),
+        _ => (values, ""),
+    };
+    let shown: Vec<String> = shown.iter().map(|value| format!("{value:04X}h")).collect();
+    shown.join(" ") + more
 }
 
 /// `1011`, the first coil first.
@@ -220,7 +274,7 @@ mod tests {
             (&[2, 4, 0, 0xD4, 0, 1], "read 1 input register from 00D4h"),
             (&[2, 5, 0, 0xAC, 0xFF, 0], "write coil 00ACh on"),
             (&[1, 6, 1, 0x45, 3, 0xE8], "write register 0145h = 03E8h"),
-            (&[1, 8, 0, 0, 0xA5, 0x37], "diagnostics 0000h: A537h"),
+            (&[1, 8, 0, 0, 0xA5, 0x37], "diagnostics, sub-function 0000h (return query data): A537h"),
             (&[1, 0x0B], "get communication event counter"),
             (&[1, 0x0F, 0, 0x13, 0, 4, 1, 0x0D], "write 4 coils from 0013h: 1011"),
             (&[1, 0x10, 1, 0x45, 0, 2, 4, 3, 0xE8, 7, 0xD0], "write 2 registers from 0145h: 03E8h 07D0h"),
@@ -228,11 +282,11 @@ mod tests {
             (&[1, 0x16, 0, 4, 0, 0xF2, 0, 0x25], "mask register 0004h AND 00F2h OR 0025h"),
             (
                 &[1, 0x17, 0, 3, 0, 6, 0, 14, 0, 1, 2, 0, 0xFF],
-                "write 1 register from 000Eh: 00FFh, then read 6 registers from 0003h",
+                "read/write multiple: write 1 register from 000Eh: 00FFh, then read 6 registers from 0003h",
             ),
             (&[1, 0x2B, 0x0E, 1, 0], "read device identification, code 01h from object 00h"),
             (&[1, 0x41, 7, 8], "function 41h: 07 08"),
-            (&[1, 3, 0, 0, 0, 126], "malformed: range: found 126 at byte 4, expected 1 to 125"),
+            (&[1, 3, 0, 0, 0, 126], "read holding registers, malformed: range: found 126 at byte 4, expected 1 to 125"),
             (&[1], "malformed: length: found 3 bytes, expected 4 to 256 bytes"),
         ];
         for (bytes, line) in cases {
@@ -250,7 +304,7 @@ mod tests {
             (&[2, 4, 2, 0, 1], "1 register: 0001h"),
             (&[2, 5, 0, 0xAC, 0, 0], "coil 00ACh written off"),
             (&[1, 6, 1, 0x45, 3, 0xE8], "register 0145h written = 03E8h"),
-            (&[1, 8, 0, 0, 0xA5, 0x37], "diagnostics 0000h: A537h"),
+            (&[1, 8, 0, 0, 0xA5, 0x37], "diagnostics, sub-function 0000h (return query data): A537h"),
             (&[1, 0x0B, 0, 0, 1, 8], "communication event counter 264, status 0000h"),
             (&[1, 0x0F, 0, 0x13, 0, 10], "10 coils from 0013h written"),
             (&[1, 0x10, 1, 0x45, 0, 2], "2 registers from 0145h written"),
@@ -283,7 +337,7 @@ mod tests {
             (&[0, 7, 0, 0, 0, 5, 0x20, 3, 2, 0x0F, 0xB4], Direction::Response, "transaction 0007h: 1 register: 0FB4h"),
             (&[1, 2, 0, 0, 0, 3, 1, 0x83, 2], Direction::Response, "transaction 0102h: exception 02 illegal data address"),
             (&[0, 7, 0, 1, 0, 3, 1, 0x83, 2], Direction::Response, "transaction 0007h: malformed: range: found protocol 1 at byte 2, expected protocol 0"),
-            (&[0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 126], Direction::Request, "transaction 0007h: malformed: range: found 126 at byte 10, expected 1 to 125"),
+            (&[0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 126], Direction::Request, "transaction 0007h: read holding registers, malformed: range: found 126 at byte 10, expected 1 to 125"),
         ];
         for (bytes, direction, line) in cases {
             assert_eq!(describe_modbus_tcp(bytes, direction), line);

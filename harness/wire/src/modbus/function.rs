@@ -35,13 +35,18 @@ function_codes! {
     READ_INPUT_REGISTERS = 0x04, "read input registers";
     WRITE_SINGLE_COIL = 0x05, "write single coil";
     WRITE_SINGLE_REGISTER = 0x06, "write single register";
+    READ_EXCEPTION_STATUS = 0x07, "read exception status";
     DIAGNOSTICS = 0x08, "diagnostics";
     GET_COMM_EVENT_COUNTER = 0x0B, "get communication event counter";
+    GET_COMM_EVENT_LOG = 0x0C, "get communication event log";
     WRITE_MULTIPLE_COILS = 0x0F, "write multiple coils";
     WRITE_MULTIPLE_REGISTERS = 0x10, "write multiple registers";
     REPORT_SERVER_ID = 0x11, "report server ID";
+    READ_FILE_RECORD = 0x14, "read file record";
+    WRITE_FILE_RECORD = 0x15, "write file record";
     MASK_WRITE_REGISTER = 0x16, "mask write register";
     READ_WRITE_MULTIPLE_REGISTERS = 0x17, "read/write multiple registers";
+    READ_FIFO_QUEUE = 0x18, "read FIFO queue";
     ENCAPSULATED_INTERFACE = 0x2B, "encapsulated interface transport";
 }
 

@@ -182,7 +182,7 @@ mod tests {
                 &with(3, 1),
                 "range: found protocol 1 at byte 2, expected protocol 0",
             ),
-            (&with(5, 7), "count: found 7 at byte 4, expected 6"),
+            (&with(5, 7), "byte count: found 7 at byte 4, expected 6"),
         ];
         for (bytes, message) in cases {
             assert_eq!(TcpAdu::parse(bytes).unwrap_err().to_string(), message);

@@ -426,7 +426,7 @@ mod tests {
             (&[0x05, 0, 0, 0x00, 0x01], "range: found 0001h at byte 3, expected 0000h or FF00h"),
             (&[0x0F, 0, 0, 0x07, 0xB1, 0xF7], "range: found 1969 at byte 3, expected 1 to 1968"),
             (&[0x10, 0, 0, 0, 124, 248], "range: found 124 at byte 3, expected 1 to 123"),
-            (&[0x10, 0, 0, 0, 1, 3, 0, 0, 0], "count: found 3 at byte 5, expected 2"),
+            (&[0x10, 0, 0, 0, 1, 3, 0, 0, 0], "byte count: found 3 at byte 5, expected 2"),
             (&[0x17, 0, 0, 0, 1, 0, 0, 0, 122, 244], "range: found 122 at byte 7, expected 1 to 121"),
             (&[0x2B, 0x0E, 5, 0], "range: found 5 at byte 2, expected 1 to 4"),
             (&[0x08, 0, 0, 1], "length: found 1 byte of data, expected an even number"),
