@@ -131,6 +131,15 @@ pub(crate) const TROUBLES: &[NamedTrouble] = &[
         },
     ),
     fault(
+        "frames-by-priority",
+        On::Can,
+        // The device's own controller may send them in this order as well.
+        Must::PassAll,
+        LineFault::ByPriority {
+            within: Duration::from_millis(2),
+        },
+    ),
+    fault(
         "frames-late",
         On::Both,
         Must::Show,

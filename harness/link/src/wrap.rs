@@ -48,6 +48,12 @@ pub enum LineFault {
         /// By so much.
         by: Duration,
     },
+    /// It waits so long for what has a higher priority: of frames that come that close together the one with the lower
+    /// identifier is handed over first. A controller with a buffer for each identifier does this.
+    ByPriority {
+        /// How long.
+        within: Duration,
+    },
     /// The tester's controller tells of an error on the bus before it.
     Disturb {
         /// Which.
@@ -127,6 +133,7 @@ impl FaultyLine {
                 let at = arrival.at + by;
                 self.hold(Arrival { at, ..arrival });
             }
+            LineFault::ByPriority { within } => self.hold_by_priority(arrival, within),
             LineFault::Disturb { every, error } if hit(every) => {
                 let what = Reception::BusError(error);
                 self.hold(Arrival { what, ..arrival });
@@ -139,6 +146,26 @@ impl FaultyLine {
     fn hold(&mut self, arrival: Arrival) {
         let place = self.held.partition_point(|held| held.at <= arrival.at);
         self.held.insert(place, arrival);
+    }
+
+    /// A frame takes the place, and the time, of the first that waits and has a lower priority.
+    fn hold_by_priority(&mut self, arrival: Arrival, within: Duration) {
+        let mut due = Arrival {
+            at: arrival.at + within,
+            ..arrival
+        };
+        let mut waiting = self.held.iter();
+        let passed = waiting.position(|held| match (held.what, arrival.what) {
+            (Reception::Frame(held), Reception::Frame(frame)) => held.id().raw() > frame.id().raw(),
+            _ => false,
+        });
+        match passed {
+            Some(place) => {
+                due.at = self.held[place].at;
+                self.held.insert(place, due);
+            }
+            None => self.hold(due),
+        }
     }
 
     /// One byte after the other has its turn.

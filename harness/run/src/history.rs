@@ -18,12 +18,12 @@ impl History {
         }
     }
 
-    /// `what, after NMT reset node 10`
+    /// `what; after NMT reset node 10`
     pub(crate) fn tell(&self, what: &str) -> String {
         let first = self.0.len().saturating_sub(NAMED);
         match self.0.get(first..).unwrap_or_default() {
             [] => what.to_owned(),
-            last => format!("{what}, after {}", last.join(", then ")),
+            last => format!("{what}; after {}", last.join(", then ")),
         }
     }
 }
@@ -41,7 +41,7 @@ mod tests {
         }
         assert_eq!(
             history.tell("no SYNC came"),
-            "no SYNC came, after RPDO1, then SYNC, then TIME"
+            "no SYNC came; after RPDO1, then SYNC, then TIME"
         );
     }
 }

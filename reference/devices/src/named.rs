@@ -647,6 +647,11 @@ const WORDS: &[(&str, &[&str])] = &[
         &["another node", "other node", "node-ID"],
     ),
     ("nmt-without-node-obeyed", &["one byte", "two bytes", "NMT"]),
+    ("no-boot-up-at-node-1", &["boot-up"]),
+    (
+        "no-sdo-at-node-127",
+        &["SDO response", "SDO server does not answer"],
+    ),
     ("node-id-active-before-reset", &["node-ID"]),
     ("nothing-lost", &["power off", "power on", "power cycle"]),
     ("one-tpdo-per-sync", &["TPDO", "SYNC"]),

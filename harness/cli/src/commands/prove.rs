@@ -7,6 +7,7 @@ mod play;
 mod rounds;
 mod show;
 mod tally;
+mod watch;
 
 use std::sync::atomic::Ordering;
 
@@ -29,7 +30,7 @@ pub(crate) fn prove(options: &ProveOptions, screen: &mut Screen) -> Result<Exit,
     let rounds = rounds::rounds(&library, &plan, options)?;
     let stop = stop::on_interrupt()?;
     let shown = options.format == Format::Text && Screen::shows_progress();
-    let tallies = play::play_all(&plan, &rounds, stop, shown)?;
+    let tallies = play::play_all(&plan, &rounds, watch::LIMIT, stop, shown)?;
     if stop.load(Ordering::Relaxed) {
         return Err(Complaint::bench("interrupted"));
     }

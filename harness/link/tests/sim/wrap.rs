@@ -200,3 +200,25 @@ fn what_the_tester_sends_is_not_understood() {
     let came: Vec<Reception> = heard.iter().map(|(_, _, what)| *what).collect();
     assert_eq!(came, ["080#", "1FFFFFFF#", "080#"].map(received));
 }
+
+#[test]
+fn a_higher_priority_passes_what_waits() {
+    let device = Actor::new(CAN_500K)
+        .send(ms(1), "201#")
+        .send(ms(2), "301#")
+        .send(ms(3), "200#")
+        .send(ms(8), "100#");
+    let mut builder = Builder::new();
+    let can = builder.can_bus("can", 500_000);
+    builder.device(device.boxed(), &[can]);
+    let by_priority = LineFault::ByPriority {
+        within: Duration::from_millis(3),
+    };
+    let mut lane = FaultyLine::new(Box::new(builder.build()), PORT, by_priority);
+    let order: Vec<Reception> = arrivals(&mut lane, ms(20))
+        .into_iter()
+        .map(|(_, what)| what)
+        .collect();
+    let expected = ["200#", "201#", "301#", "100#"].map(received);
+    assert_eq!(order, expected);
+}

@@ -166,7 +166,7 @@ fn late_and_never_are_told_apart() {
         late.verdict(),
         (
             Verdict::Fail,
-            "no SDO response for 2000h:00 (581h) came in time, after SDO read 2000h:00"
+            "no SDO response for 2000h:00 (581h) came in time; after SDO read 2000h:00"
         )
     );
     assert!(
@@ -208,7 +208,7 @@ fn a_measurement_across_its_limit_decides_nothing() {
         played.verdict(),
         (
             Verdict::Inconclusive,
-            "SDO response time cannot be decided on this link, after SDO read 2000h:00"
+            "SDO response time cannot be decided on this link; after SDO read 2000h:00"
         )
     );
 }
@@ -240,7 +240,7 @@ fn an_expectation_does_not_look_past_the_last_send() {
         played.verdict(),
         (
             Verdict::Fail,
-            "no SDO response for 2000h:00 (581h) came in time, after SDO read 2000h:00, then SDO read 3000h:00"
+            "no SDO response for 2000h:00 (581h) came in time; after SDO read 2000h:00, then SDO read 3000h:00"
         )
     );
 }
@@ -351,7 +351,7 @@ fn a_heartbeat_with_a_state_the_node_was_not_told_fails() {
     let played = setup.play(device(), cases);
     assert_eq!(
         played.verdict().1,
-        "an unexpected error control message came: heartbeat operational, after SDO write 1017h:00 = 10 (Ah), then NMT stop node 1"
+        "an unexpected error control message came: heartbeat operational; after SDO write 1017h:00 = 10 (Ah), then NMT stop node 1"
     );
 }
 
@@ -507,7 +507,7 @@ fn periods_of_frames_are_measured() {
         verdict([10, 20, 30, 40], "080#01"),
         (
             Verdict::Fail,
-            "another frame came than expected: SYNC 1; expected: SYNC, after NMT start all nodes"
+            "another frame came than expected: SYNC 1; expected: SYNC; after NMT start all nodes"
                 .to_owned()
         )
     );
@@ -515,7 +515,7 @@ fn periods_of_frames_are_measured() {
         verdict([10, 20, 30, 90], "080#"),
         (
             Verdict::Fail,
-            "080h stops, after NMT start all nodes".to_owned()
+            "080h stops; after NMT start all nodes".to_owned()
         )
     );
 }

@@ -52,7 +52,7 @@ fn syncs_between_pdos_are_counted_exactly() {
         (&[3, 3, 3, 4], "TPDO1 comes after 4 SYNCs, and not after 3"),
         (&[3, 9], "TPDO1 stops"),
     ] {
-        let wrong = format!("{wrong}, after SYNC every 10 ms");
+        let wrong = format!("{wrong}; after SYNC every 10 ms");
         assert_eq!(verdict(distances), (Verdict::Fail, wrong));
     }
 }

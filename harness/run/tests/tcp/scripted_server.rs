@@ -131,7 +131,7 @@ fn a_failure_shows_the_transaction_that_went_wrong() {
     assert_eq!(
         played.cases()[0].failures[0].what,
         "the registers hold something else: 3840 (0F00h), and not 4020 (0FB4h): \
-         transaction 0001h: 1 register: 0F00h, after read 1 holding register from 0001h"
+         transaction 0001h: 1 register: 0F00h; after read 1 holding register from 0001h"
     );
     let excerpt = &played.cases()[0].excerpt;
     let words: Vec<&str> = excerpt.iter().map(|line| line.decoded.as_str()).collect();

@@ -240,6 +240,14 @@ pub(crate) const ERROR_CONTROL_SILENT_IN_PRE_OPERATIONAL: Fault = Fault {
     },
 };
 
+pub(crate) const NO_BOOT_UP_AT_NODE_1: Fault = Fault {
+    name: "no-boot-up-at-node-1",
+    breaks: "CiA 301: boot-up protocol, of every node-ID from 1 to 127",
+    words: "sends no boot-up message when its node-ID is 1",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.nmt.no_boot_up_at = Some(1),
+};
+
 /// Those that every CANopen slave here can have.
 pub(crate) const COMMON: &[Fault] = &[
     NMT_COMMAND_OF_ONE_BYTE_OBEYED,
@@ -251,6 +259,7 @@ pub(crate) const COMMON: &[Fault] = &[
 
 /// Those of a slave that has everything.
 pub(crate) const REST: &[Fault] = &[
+    NO_BOOT_UP_AT_NODE_1,
     STOP_IGNORED_IN_PRE_OPERATIONAL,
     PRE_OPERATIONAL_IGNORED_IN_STOPPED,
     RESET_NODE_IGNORED_IN_STOPPED,

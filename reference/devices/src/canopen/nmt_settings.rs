@@ -25,6 +25,8 @@ pub struct NmtSettings {
     pub requests_done_in_stopped: bool,
     /// Boot-up messages after a reset: 1.
     pub boot_ups: u8,
+    /// The node-ID with which there are none.
+    pub no_boot_up_at: Option<u8>,
     /// The byte of the boot-up message: 0.
     pub boot_up_byte: u8,
     /// A heartbeat comes before the boot-up message.
@@ -52,6 +54,7 @@ impl Default for NmtSettings {
             extended_identifier_taken: false,
             requests_done_in_stopped: false,
             boot_ups: 1,
+            no_boot_up_at: None,
             boot_up_byte: 0,
             heartbeat_before_boot_up: false,
             boot_up_after_reset_communication: true,

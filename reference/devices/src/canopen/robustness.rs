@@ -46,6 +46,8 @@ pub struct Robustness {
     pub unknown_identifier_reported: bool,
     /// Of the node-ID in the identifier of an SDO request six bits count.
     pub sdo_filter_of_six_bits: bool,
+    /// The node-ID with which it takes no SDO requests.
+    pub no_sdo_at: Option<u8>,
     /// An RPDO without data resets it.
     pub empty_pdo_resets: bool,
 }
@@ -86,7 +88,7 @@ impl Slave {
             && ((bearing.stops_at_remote_request && remote)
                 || (bearing.stops_at_empty_request && !remote && len == 0)
                 || (bearing.stops_at_unknown_command && unknown));
-        if self.strain.stopped {
+        if self.strain.stopped || own_request && bearing.no_sdo_at == Some(self.node) {
             return None;
         }
         if bearing.stops_at_remote_nmt && raw == 0 && remote {

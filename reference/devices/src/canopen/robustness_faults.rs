@@ -114,6 +114,14 @@ pub(crate) const SDO_FILTER_OF_SIX_BITS: Fault = Fault {
     apply: |behaviour| behaviour.canopen.robustness.sdo_filter_of_six_bits = true,
 };
 
+pub(crate) const NO_SDO_AT_NODE_127: Fault = Fault {
+    name: "no-sdo-at-node-127",
+    breaks: "CiA 301: predefined connection set, SDO of every node-ID from 1 to 127",
+    words: "takes no SDO requests when its node-ID is 127",
+    caught_by: "lss",
+    apply: |behaviour| behaviour.canopen.robustness.no_sdo_at = Some(127),
+};
+
 /// All of them.
 pub(crate) const ALL: &[Fault] = &[
     STOPS_AT_UNKNOWN_COMMAND,
@@ -130,4 +138,5 @@ pub(crate) const ALL: &[Fault] = &[
     FOREIGN_HEARTBEAT_ENDS_OWN,
     UNKNOWN_IDENTIFIER_REPORTED,
     SDO_FILTER_OF_SIX_BITS,
+    NO_SDO_AT_NODE_127,
 ];

@@ -438,7 +438,11 @@ impl Slave {
         let settings = &self.behaviour.nmt;
         let heartbeat = [State::PreOperational.code(&self.behaviour)];
         let before = settings.heartbeat_before_boot_up.then_some(heartbeat);
-        let boot_ups = (0..settings.boot_ups).map(|_| [settings.boot_up_byte]);
+        let count = match settings.no_boot_up_at == Some(self.node) {
+            true => 0,
+            false => settings.boot_ups,
+        };
+        let boot_ups = (0..count).map(|_| [settings.boot_up_byte]);
         for bytes in before.into_iter().chain(boot_ups) {
             let frame = Frame::data(identifier(0x700 + u16::from(self.node)), &bytes);
             if let Some(frame) = frame {

@@ -80,6 +80,8 @@ pub(super) enum Wrong {
     PassedInVain,
     /// Trouble on the line was not seen.
     NotSeen,
+    /// It did not end.
+    Hung,
 }
 
 pub(super) fn judge(rounds: &[Round], tallies: &[Tally], whole: bool) -> Proof {
@@ -106,6 +108,9 @@ pub(super) fn judge(rounds: &[Round], tallies: &[Tally], whole: bool) -> Proof {
             Guise::Variant(_) | Guise::Line(_) => {}
         }
         finding.judge(&round.expects);
+        if tally.hung {
+            finding.wrong = Some(Wrong::Hung);
+        }
         findings.push(finding);
     }
     let figures = figures(&findings, &cases);

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
+use std::time::Duration;
 
 use super::rounds::Round;
 use super::tally::Tally;
+use super::watch::{Watched, watch};
 use crate::complaint::Complaint;
 use crate::player::{self, Plan};
 use crate::progress::Progress;
@@ -33,23 +35,32 @@ fn play_round(plan: &Plan, round: &Round, stop: &AtomicBool) -> Result<Tally, Co
     }
 }
 
-/// Plays all rounds, as many at once as there are processors.
+/// Plays all rounds, as many at once as there are processors. None of them takes longer than `limit`.
 pub(super) fn play_all(
     plan: &Plan,
     rounds: &[Round],
+    limit: Duration,
     stop: &AtomicBool,
     shown: bool,
 ) -> Result<Vec<Tally>, Complaint> {
     let next = AtomicUsize::new(0);
+    let all_done = AtomicBool::new(false);
+    let watched: Vec<Watched> = rounds.iter().map(|_| Watched::default()).collect();
     let progress = Progress::new(rounds.len() as u64, shown);
     let done: Mutex<BTreeMap<usize, Tally>> = Mutex::default();
     let work = || -> Result<(), Complaint> {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(round) = rounds.get(index) else {
+            let (Some(round), Some(watched)) = (rounds.get(index), watched.get(index)) else {
                 return Ok(());
             };
-            let tally = play_round(plan, round, stop)?;
+            if stop.load(Ordering::Relaxed) {
+                return Ok(());
+            }
+            watched.begin();
+            let mut tally = play_round(plan, round, &watched.stop)?;
+            watched.end();
+            tally.hung = watched.hung();
             done.lock()
                 .unwrap_or_else(PoisonError::into_inner)
                 .insert(index, tally);
@@ -58,11 +69,14 @@ pub(super) fn play_all(
     };
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let worked: Vec<_> = thread::scope(|scope| {
+        scope.spawn(|| watch(&watched, limit, stop, &all_done));
         let workers: Vec<_> = (0..processors).map(|_| scope.spawn(work)).collect();
-        workers
+        let worked = workers
             .into_iter()
             .map(thread::ScopedJoinHandle::join)
-            .collect()
+            .collect();
+        all_done.store(true, Ordering::Relaxed);
+        worked
     });
     progress.clear();
     for worked in worked {

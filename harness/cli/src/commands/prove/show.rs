@@ -105,6 +105,7 @@ fn wrong_rounds(text: &mut String, proof: &Proof) {
                 )
             }
             Some(Wrong::NotSeen) => "nothing shows it".to_owned(),
+            Some(Wrong::Hung) => "it did not end, and was ended".to_owned(),
         };
         say(
             text,

@@ -15,6 +15,8 @@ pub(super) struct Tally {
     pub(super) tried: BTreeSet<String>,
     /// Why lanes ended before their last case.
     pub(super) stops: Vec<String>,
+    /// Whether it had to be ended, for it took too long.
+    pub(super) hung: bool,
 }
 
 #[derive(Debug, Default)]
