@@ -77,7 +77,7 @@ pub(crate) fn open(
         _ => {
             let lane = Box::new(connect(device, behaviour)?);
             Ok(match behaviour.line {
-                Some(trouble) => trouble.between(lane),
+                Some(trouble) => trouble.between(lane, &device.description),
                 None => lane,
             })
         }

@@ -5,7 +5,10 @@ use std::time::Duration;
 
 use fieldproof_devices::DeviceKind;
 use fieldproof_devices::Medium;
-use fieldproof_link::{BusError, FaultyLine, Lane, LineFault, PortIndex};
+use fieldproof_link::{
+    BusError, FaultyLine, Lane, Line, LineFault, LinkError, PortIndex, PortProperties, Transmission,
+};
+use fieldproof_suite::device::DeviceDescription;
 
 /// What is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +17,8 @@ pub enum LineTrouble {
     Fault(LineFault),
     /// Another node is on the bus, and busy.
     Neighbour,
+    /// Another master was there before, and sent these frames. `SDO` stands for the identifier of the device's requests.
+    MasterBefore(&'static [&'static str]),
 }
 
 /// A trouble with its name.
@@ -184,7 +189,30 @@ pub(crate) const TROUBLES: &[NamedTrouble] = &[
         on: On::Can,
         must: Must::PassAll,
     },
+    master_before("found-operational", &["000#0100"]),
+    master_before("found-stopped", &["000#0200"]),
+    master_before(
+        "found-operational-with-heartbeat",
+        &["SDO#2B171000C8000000", "000#0100"],
+    ),
+    master_before(
+        "found-stopped-with-heartbeat",
+        &["SDO#2B171000C8000000", "000#0200"],
+    ),
 ];
+
+/// Whatever another master left, a right device passes.
+const fn master_before(name: &'static str, frames: &'static [&'static str]) -> NamedTrouble {
+    NamedTrouble {
+        name,
+        trouble: LineTrouble::MasterBefore(frames),
+        on: On::Can,
+        must: Must::PassAll,
+    }
+}
+
+/// How long another master lets a device go on between two frames.
+const MASTER_PAUSE: Duration = Duration::from_millis(50);
 
 impl NamedTrouble {
     /// Whether a line of such a device can have it.
@@ -200,13 +228,47 @@ impl NamedTrouble {
 
 impl LineTrouble {
     /// `lane`, and the trouble on each of its ports that can have it.
-    pub(crate) fn between(self, mut lane: Box<dyn Lane>) -> Box<dyn Lane> {
-        let LineTrouble::Fault(fault) = self else {
-            return lane;
-        };
-        for port in 0..lane.ports().len() {
-            lane = Box::new(FaultyLine::new(lane, PortIndex(port), fault));
+    pub(crate) fn between(
+        self,
+        mut lane: Box<dyn Lane>,
+        device: &DeviceDescription,
+    ) -> Box<dyn Lane> {
+        match self {
+            LineTrouble::Neighbour => {}
+            LineTrouble::Fault(fault) => {
+                for port in 0..lane.ports().len() {
+                    lane = Box::new(FaultyLine::new(lane, PortIndex(port), fault));
+                }
+            }
+            LineTrouble::MasterBefore(frames) => {
+                let is_can = |port: &PortProperties| matches!(port.line, Line::Can { .. });
+                let can = lane.ports().iter().position(is_can);
+                let node = device.canopen.as_ref().map(|canopen| canopen.node);
+                if let (Some(can), Some(node)) = (can, node) {
+                    let request = format!("{:03X}", 0x600 + u16::from(node));
+                    let frames = frames.iter().map(|frame| frame.replace("SDO", &request));
+                    // A link that fails will fail again for the tester, who says so.
+                    let _ = play(lane.as_mut(), PortIndex(can), frames, device.timing.boot_up);
+                }
+            }
         }
         lane
     }
+}
+
+/// Sends frames to a device that has booted; nobody hears what it says.
+fn play(
+    lane: &mut dyn Lane,
+    port: PortIndex,
+    frames: impl Iterator<Item = String>,
+    boot_up: Duration,
+) -> Result<(), LinkError> {
+    let mut until = lane.now() + boot_up;
+    while lane.receive(until)?.is_some() {}
+    for frame in frames.filter_map(|frame| frame.parse().ok()) {
+        lane.send(port, until, Transmission::Frame(frame))?;
+        until = lane.now() + MASTER_PAUSE;
+        while lane.receive(until)?.is_some() {}
+    }
+    Ok(())
 }

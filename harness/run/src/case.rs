@@ -8,7 +8,7 @@ use fieldproof_record::{
 };
 use fieldproof_suite::Position;
 use fieldproof_suite::device::Instead;
-use fieldproof_suite::model::{Case, Located, NmtState, Step};
+use fieldproof_suite::model::{Case, Located, Step};
 
 use crate::excerpt::excerpt;
 use crate::steps::{check_of, is_precondition};
@@ -69,7 +69,6 @@ impl Tester<'_> {
     pub(crate) fn play_case(
         &mut self,
         case: &Case,
-        as_found: Option<NmtState>,
         place: &dyn Fn(Position) -> Place,
     ) -> CaseOutcome {
         self.session.begin_case();
@@ -104,7 +103,7 @@ impl Tester<'_> {
             let put_back = self
                 .let_late_answers_pass(&findings)
                 .and_then(|()| self.session.disconnect_all())
-                .and_then(|()| self.put_back(case, as_found))
+                .and_then(|()| self.put_back(case))
                 .and_then(|()| self.session.settle());
             if let Err(stop) = put_back {
                 self.find_not_put_back(&mut findings, stop, place(case.at));

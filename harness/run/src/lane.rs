@@ -1,7 +1,6 @@
 //! One lane: all cases that apply to one device, in order.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use fieldproof_dictionary::Dictionary;
 use fieldproof_link::{Lane, State};
@@ -9,8 +8,8 @@ use fieldproof_record::{
     CaseFinished, Event, LaneFinished, Place, Sink, SuiteFinished, SuiteStarted, Verdict,
     VerdictCounts,
 };
-use fieldproof_suite::device::{DeviceDescription, Feature};
-use fieldproof_suite::model::{Case, NmtState};
+use fieldproof_suite::device::DeviceDescription;
+use fieldproof_suite::model::Case;
 use fieldproof_suite::{CaseRef, Diagnostic, Environment, Position, Suite};
 use fieldproof_wire::canopen::NodeId;
 
@@ -18,13 +17,11 @@ use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
 use crate::entries;
 use crate::history::History;
-use crate::node::{HEARTBEAT, NodeWatch};
+use crate::node::NodeWatch;
 use crate::relocate::relocate;
-use crate::sdo::Outcome;
 use crate::session::Session;
 use crate::steps::main_role;
-use crate::stop::Stop;
-use crate::tester::{DEVICE_TYPE, Tester};
+use crate::tester::Tester;
 use crate::undo::UndoStack;
 use crate::value::Saved;
 use crate::words::Explaining;
@@ -103,7 +100,7 @@ pub fn play_lane(
         false => sink,
     };
     let mut player = Player::new(job, lane, sink, stop);
-    player.find_device();
+    let found = player.tester.find_device();
     if job.explains {
         player.tester.read_identity();
     }
@@ -112,6 +109,9 @@ pub fn play_lane(
             break;
         }
         player.play_suite(suite);
+    }
+    if let Some(found) = found {
+        player.tester.leave_device(found);
     }
     let outcome = player.outcome;
     let at_ns = player.tester.session.now().as_nanos();
@@ -132,8 +132,6 @@ struct Player<'a> {
     stop: &'a AtomicBool,
     tester: Tester<'a>,
     environment: Environment,
-    /// The NMT state the device was found in.
-    as_found: Option<NmtState>,
     outcome: LaneOutcome,
     /// What the last look into the device showed.
     last_state: Option<State>,
@@ -180,55 +178,12 @@ impl<'a> Player<'a> {
                 address: job.bench.address.or(Some(1)),
                 identity: job.device.identity.numbers(),
             },
-            as_found: None,
             last_state: None,
             outcome: LaneOutcome {
                 counts: VerdictCounts::default(),
                 stopped: None,
             },
         }
-    }
-
-    /// Waits until a CANopen device is there: it may have been powered with the lane, and then boots first.
-    fn find_device(&mut self) {
-        if self.tester.node.is_none() || !self.tester.claims(Feature::NmtSlave) {
-            return;
-        }
-        let tester = &mut self.tester;
-        let patience = tester.session.now() + tester.device.timing.boot_up;
-        let probe = Duration::from_millis(100);
-        let mut sends_pdos = false;
-        loop {
-            let next = tester.session.now() + probe;
-            if tester.session.collect_until(next).is_err() {
-                return;
-            }
-            sends_pdos |= tester.has_sent_pdos();
-            match tester.sdo_upload(DEVICE_TYPE, tester.device.timing.sdo_response) {
-                Ok(_) => break,
-                // Silent for longer than it may take to boot: the cases will say what is wrong with it.
-                Err(Stop::Mismatch(_) | Stop::Undecided(_)) if tester.session.now() >= patience => {
-                    break;
-                }
-                Err(Stop::Mismatch(_) | Stop::Undecided(_)) => {}
-                Err(_) => return,
-            }
-        }
-        // A node that starts by itself sends its PDOs; nothing else can be seen without switching something on.
-        let state = match sends_pdos {
-            true => NmtState::Operational,
-            false => NmtState::PreOperational,
-        };
-        if tester.claims(Feature::HeartbeatProducer)
-            && let Ok(Outcome::Done(found)) =
-                tester.sdo_upload(HEARTBEAT, tester.device.timing.sdo_response)
-        {
-            tester.watch.found_heartbeat(found.of_size(Some(2)));
-        }
-        tester.session.begin_case();
-        let now = tester.session.now();
-        tester.watch.found(state, now);
-        self.as_found = Some(state);
     }
 
     fn play_suite(&mut self, suite: &Suite) {
@@ -330,13 +285,13 @@ impl<'a> Player<'a> {
     /// Plays a case, and looks into the device before and after where the lane can.
     fn play_and_inspect(&mut self, case: &Case, place: &dyn Fn(Position) -> Place) -> CaseOutcome {
         if !self.job.inspects_device {
-            return self.tester.play_case(case, self.as_found, place);
+            return self.tester.play_case(case, place);
         }
         let before = match self.last_state.take() {
             Some(state) => state,
             None => self.tester.session.lane().device_state(),
         };
-        let mut outcome = self.tester.play_case(case, self.as_found, place);
+        let mut outcome = self.tester.play_case(case, place);
         let after = self.tester.session.lane().device_state();
         let differences = before.differences(&after);
         if !differences.is_empty() && outcome.stops_lane.is_none() {

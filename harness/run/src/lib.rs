@@ -11,6 +11,7 @@ mod companions;
 mod entries;
 mod excerpt;
 mod find;
+mod found;
 mod history;
 mod identity;
 mod lane;

@@ -27,6 +27,10 @@ pub(crate) struct NodeWatch {
     heartbeat_by_default: bool,
     /// Whether 1017h may hold something else after a reset, for it was found or saved so.
     may_outlive_reset: bool,
+    /// What 1017h was found to hold, in milliseconds, if that was a heartbeat.
+    found_heartbeat: Option<u16>,
+    /// Whether it was reset since 1017h was seen to hold that.
+    may_have_forgotten: bool,
     /// Nobody knows whether it produces heartbeats.
     unsure: bool,
     /// When it was asked for its state by guarding requests whose answers have not been expected yet.
@@ -43,6 +47,8 @@ impl NodeWatch {
             heartbeat_period: None,
             heartbeat_by_default,
             may_outlive_reset: false,
+            found_heartbeat: None,
+            may_have_forgotten: false,
             unsure: false,
             guarding_requests: Vec::new(),
         }
@@ -58,10 +64,16 @@ impl NodeWatch {
         self.states = vec![(at, state)];
     }
 
-    /// 1017h holds `value`: what it holds after a reset may be the same, if it was stored.
-    pub(crate) fn found_heartbeat(&mut self, value: &[u8]) {
-        self.wrote(HEARTBEAT, value);
+    /// 1017h holds so many milliseconds: what it holds after a reset may be the same, if it was stored.
+    pub(crate) fn found_heartbeat(&mut self, milliseconds: u16) {
+        self.wrote(HEARTBEAT, &milliseconds.to_le_bytes());
         self.may_outlive_reset |= self.heartbeat != self.heartbeat_by_default;
+        self.found_heartbeat = (milliseconds != 0).then_some(milliseconds);
+    }
+
+    /// What 1017h was found to hold, in milliseconds, if a reset may have made the node forget it.
+    pub(crate) fn forgotten_heartbeat(&self) -> Option<u16> {
+        self.found_heartbeat.filter(|_| self.may_have_forgotten)
     }
 
     /// A case begins: what was before the present state matters no more.
@@ -194,11 +206,14 @@ impl NodeWatch {
         let milliseconds = bytes.fold(0, |value, byte| value << 8 | u64::from(*byte));
         let period = (milliseconds != 0).then(|| Duration::from_millis(milliseconds));
         self.unsure = false;
+        let is_as_found = self.found_heartbeat.map(u64::from) == Some(milliseconds);
+        self.may_have_forgotten &= !is_as_found;
         self.set_heartbeat(period.is_some(), period, None);
     }
 
     fn reset_heartbeat(&mut self, at: Instant) {
         self.unsure = self.may_outlive_reset;
+        self.may_have_forgotten = true;
         self.set_heartbeat(self.heartbeat_by_default, None, Some(at));
     }
 
@@ -317,13 +332,13 @@ mod tests {
     #[test]
     fn a_heartbeat_that_was_found_may_come_after_a_reset() {
         let mut watch = NodeWatch::new(false);
-        watch.found_heartbeat(&[0xE8, 0x03]);
+        watch.found_heartbeat(1_000);
         assert!(watch.heartbeat && watch.had_heartbeat(ms(10)));
         watch.commanded(Command::ResetNode, ms(20));
         assert!(!watch.heartbeat && watch.had_heartbeat(ms(500)));
 
         let mut watch = NodeWatch::new(false);
-        watch.found_heartbeat(&[0, 0]);
+        watch.found_heartbeat(0);
         watch.commanded(Command::ResetNode, ms(20));
         assert!(!watch.had_heartbeat(ms(500)));
     }

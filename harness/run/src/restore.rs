@@ -5,6 +5,7 @@ use fieldproof_suite::device::Feature;
 use fieldproof_suite::model::{Case, Effect, NmtState};
 use fieldproof_wire::canopen::Multiplexer;
 
+use crate::found::PLAYED_IN;
 use crate::modbus::{Answer, show_bytes};
 use crate::pdo_procedure::pdo_parameters;
 use crate::sdo::{Outcome, show_abort};
@@ -162,15 +163,15 @@ impl Tester<'_> {
     }
 
     /// Puts everything back and reads it back. Nothing interrupts it.
-    pub(crate) fn put_back(&mut self, case: &Case, as_found: Option<NmtState>) -> Result<(), Stop> {
+    pub(crate) fn put_back(&mut self, case: &Case) -> Result<(), Stop> {
         self.session.uninterruptible = true;
-        let result = self.put_back_all(case, as_found);
+        let result = self.put_back_all(case);
         self.session.uninterruptible = false;
         self.undo.clear();
         result
     }
 
-    fn put_back_all(&mut self, case: &Case, as_found: Option<NmtState>) -> Result<(), Stop> {
+    fn put_back_all(&mut self, case: &Case) -> Result<(), Stop> {
         self.stop_sync()?;
         for port in self.undo.take_companions() {
             self.renew_companion(port)?;
@@ -187,7 +188,7 @@ impl Tester<'_> {
         while let Some(undo) = self.undo.pop() {
             self.undo_one(undo)?;
         }
-        self.settle_node(as_found)
+        self.settle_node()
     }
 
     fn play_restore_steps(&mut self, case: &Case) -> Result<(), Stop> {
@@ -302,22 +303,20 @@ impl Tester<'_> {
         Ok(())
     }
 
-    /// Brings the node back into the state it was found in.
-    fn settle_node(&mut self, as_found: Option<NmtState>) -> Result<(), Stop> {
+    /// Brings the node back into the state that cases find it in.
+    fn settle_node(&mut self) -> Result<(), Stop> {
         if self.node.is_none() || !self.claims(Feature::NmtSlave) {
             return Ok(());
         }
         if self.watch.boot_up_due {
             self.await_boot_up()?;
         }
-        match as_found {
-            Some(state) if self.watch.state() != Some(state) => {
-                self.command_into(state)?;
-                let settled = self.session.now() + self.device.timing.nmt_transition;
-                self.session.collect_until(settled)
-            }
-            _ => Ok(()),
+        if self.watch.state() != Some(PLAYED_IN) {
+            self.command_into(PLAYED_IN)?;
+            let settled = self.session.now() + self.device.timing.nmt_transition;
+            self.session.collect_until(settled)?;
         }
+        self.give_heartbeat_back()
     }
 
     /// Waits for the boot-up of a node that was reset or powered. One that leaves it out but answers again is back all

@@ -164,7 +164,7 @@ pub(crate) fn is_proper_heartbeat(
 }
 
 /// The state that a byte of error control names; bit 7 is not part of it.
-const fn nmt_state(code: u8) -> Option<NmtState> {
+pub(crate) const fn nmt_state(code: u8) -> Option<NmtState> {
     match State::from_code(code) {
         State::Stopped => Some(NmtState::Stopped),
         State::Operational => Some(NmtState::Operational),

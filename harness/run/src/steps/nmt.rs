@@ -46,6 +46,11 @@ impl Tester<'_> {
         match self.observe_state(target, self.device.timing.nmt_transition)? {
             Observed::Is | Observed::CannotTell => {
                 self.history.add(describe_frame(&command));
+                // What was on its way when the command came is no business of what follows. A node that becomes operational
+                // sends its PDOs at once: these are.
+                if target != NmtState::Operational {
+                    self.session.mark_sent();
+                }
                 Ok(())
             }
             Observed::Not(actual) => Err(Stop::undecided(
