@@ -19,7 +19,7 @@ use fieldproof_report::{Problem, Severity, SourceText};
 use fieldproof_run::{Known, fill, fill_some, suites_for};
 use fieldproof_suite::bench::{Link, LinkKind};
 use fieldproof_suite::catalogue::Catalogue;
-use fieldproof_suite::device::{DeviceDescription, PortDescription};
+use fieldproof_suite::device::{DeviceDescription, Feature, PortDescription};
 use fieldproof_suite::model::{Effect, Located, StimulusName};
 use fieldproof_suite::{Diagnostic, Position, SourceFile, Suite};
 
@@ -115,6 +115,14 @@ impl Device {
             suites: suites_for(suites, &self.description).map(some).collect(),
             ..self.clone()
         }
+    }
+
+    /// One that was configured: its defaults hold no more.
+    pub(crate) fn configured(&self) -> Device {
+        let mut device = self.clone();
+        let features = &mut device.description.features;
+        features.retain(|feature| *feature != Feature::FactorySettings);
+        device
     }
 
     fn fill(&mut self, suites: &[Suite]) {

@@ -50,6 +50,8 @@ pub(crate) enum Must {
     Show,
     /// Everything passes: it is not the device's doing.
     PassAll,
+    /// No case fails, though some may not be able to judge.
+    FailNothing,
 }
 
 const fn every(number: u32) -> NonZeroU32 {
@@ -199,6 +201,31 @@ pub(crate) const TROUBLES: &[NamedTrouble] = &[
         "found-stopped-with-heartbeat",
         &["SDO#2B171000C8000000", "000#0200"],
     ),
+    NamedTrouble {
+        must: Must::FailNothing,
+        ..master_before("found-configured", CONFIGURATION)
+    },
+];
+
+/// Much that another master may have stored: heartbeat, guarding, heartbeats that are watched, inhibit time of EMCY,
+/// and EMCY, SYNC, TIME, RPDO1 and TPDO1 under other identifiers. A device refuses what it does not have.
+const CONFIGURATION: &[&str] = &[
+    "SDO#2B171000C8000000",
+    "SDO#2B0C100064000000",
+    "SDO#2F0D100003000000",
+    "SDO#23161001E8037000",
+    "SDO#2B151000F4010000",
+    "SDO#2305100092060000",
+    "SDO#2312100093060000",
+    "SDO#2314100091060080",
+    "SDO#2314100091060000",
+    "SDO#2300140180060080",
+    "SDO#2300140180060000",
+    "SDO#2300180190060080",
+    "SDO#2F00180201000000",
+    "SDO#2300180190060040",
+    "SDO#2310100173617665",
+    "000#8100",
 ];
 
 /// Whatever another master left, a right device passes.
@@ -215,6 +242,11 @@ const fn master_before(name: &'static str, frames: &'static [&'static str]) -> N
 const MASTER_PAUSE: Duration = Duration::from_millis(50);
 
 impl NamedTrouble {
+    /// Whether the device is one that was configured.
+    pub(crate) fn configures(&self) -> bool {
+        self.trouble == LineTrouble::MasterBefore(CONFIGURATION)
+    }
+
     /// Whether a line of such a device can have it.
     pub(crate) fn fits(&self, kind: &DeviceKind) -> bool {
         kind.ports.iter().any(|port| match port.medium {

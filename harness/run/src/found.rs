@@ -6,7 +6,7 @@ use std::time::Duration;
 use fieldproof_can::{Frame, Id};
 use fieldproof_link::Instant;
 use fieldproof_suite::device::Feature;
-use fieldproof_suite::model::NmtState;
+use fieldproof_suite::model::{Case, Need, NmtState};
 use fieldproof_wire::canopen::{Multiplexer, Service, identify};
 
 use crate::node::HEARTBEAT;
@@ -26,10 +26,57 @@ const PROBE: Duration = Duration::from_millis(100);
 const LONGEST_HEARTBEAT: Duration = Duration::from_secs(10);
 
 /// How a node was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, PartialEq, Eq, Default)]
 pub(crate) struct Found {
     /// The state it was in, as far as that could be seen.
     state: Option<NmtState>,
+    /// Services that are not under their predefined identifiers, with what the object holds that says so.
+    moved: Vec<(&'static Predefined, u32)>,
+}
+
+/// A service whose identifier an object of the device holds.
+#[derive(Debug, PartialEq, Eq)]
+struct Predefined {
+    service: Service,
+    object: Multiplexer,
+    /// Bits of the object that are not part of the identifier, or of whether there is one.
+    other_bits: u32,
+    /// Cases that need one of these rest on the predefined identifier.
+    features: &'static [Feature],
+}
+
+static PREDEFINED: [Predefined; 3] = [
+    Predefined {
+        service: Service::Emergency,
+        object: Multiplexer::new(0x1014, 0),
+        other_bits: 1 << 30,
+        features: &[Feature::Emergency],
+    },
+    Predefined {
+        service: Service::Sync,
+        object: Multiplexer::new(0x1005, 0),
+        other_bits: 1 << 31 | 1 << 30,
+        features: &[Feature::SyncConsumer, Feature::SyncProducer],
+    },
+    Predefined {
+        service: Service::Time,
+        object: Multiplexer::new(0x1012, 0),
+        other_bits: 1 << 31 | 1 << 30,
+        features: &[Feature::TimeConsumer, Feature::TimeProducer],
+    },
+];
+
+impl Found {
+    /// Why a case cannot be played with the node as it was found.
+    pub(crate) fn skip_reason(&self, case: &Case) -> Option<String> {
+        let is_needed = |feature: &Feature| case.needs.contains(&Need::Feature(*feature));
+        let mut moved = self.moved.iter();
+        let (predefined, held) = moved.find(|(it, _)| it.features.iter().any(is_needed))?;
+        Some(format!(
+            "{} was found to hold {held:08X}h: {} is not under its predefined identifier",
+            predefined.object, predefined.service
+        ))
+    }
 }
 
 /// The state that every case finds the node in.
@@ -67,11 +114,34 @@ impl Tester<'_> {
             heard = Some(NmtState::Stopped);
             self.read_heartbeat(&mut heard)?;
         }
-        Ok(Found { state: heard })
+        Ok(Found {
+            state: heard,
+            moved: self.moved_services()?,
+        })
+    }
+
+    /// Somebody may have changed identifiers. A node that was never configured has no excuse.
+    fn moved_services(&mut self) -> Result<Vec<(&'static Predefined, u32)>, Stop> {
+        let mut moved = Vec::new();
+        if !self.claims(Feature::SdoServer) || self.claims(Feature::FactorySettings) {
+            return Ok(moved);
+        }
+        for service in PREDEFINED.iter() {
+            if !service.features.iter().any(|it| self.claims(*it)) {
+                continue;
+            }
+            let identifier = u32::from(self.identifier(service.service)?.raw());
+            let held = self.number_in(service.object)?;
+            moved.extend(
+                held.filter(|held| held & !service.other_bits != identifier)
+                    .map(|held| (service, held)),
+            );
+        }
+        Ok(moved)
     }
 
     /// Leaves the node in the state it was found in. If the link is down that cannot be helped.
-    pub(crate) fn leave_device(&mut self, found: Found) {
+    pub(crate) fn leave_device(&mut self, found: &Found) {
         if let Some(state) = found.state.filter(|state| *state != PLAYED_IN) {
             self.session.uninterruptible = true;
             let left = self.command_into(state);
@@ -87,7 +157,7 @@ impl Tester<'_> {
             return Ok(());
         };
         let value = milliseconds.to_le_bytes();
-        if self.number_in(HEARTBEAT)? == Some(milliseconds) {
+        if self.number_in(HEARTBEAT)? == Some(u32::from(milliseconds)) {
             self.watch.wrote(HEARTBEAT, &value);
             return Ok(());
         }
@@ -124,7 +194,8 @@ impl Tester<'_> {
         if !self.claims(Feature::HeartbeatProducer) {
             return Ok(());
         }
-        let Some(milliseconds) = self.number_in(HEARTBEAT)? else {
+        let period = self.number_in(HEARTBEAT)?;
+        let Some(milliseconds) = period.and_then(|period| u16::try_from(period).ok()) else {
             return Ok(());
         };
         self.watch.found_heartbeat(milliseconds);
@@ -161,8 +232,8 @@ impl Tester<'_> {
         Ok(())
     }
 
-    /// The first two bytes of an object, where it can be read.
-    fn number_in(&mut self, object: Multiplexer) -> Result<Option<u16>, Stop> {
+    /// The number that an object holds, where it can be read.
+    fn number_in(&mut self, object: Multiplexer) -> Result<Option<u32>, Stop> {
         let value = match self.sdo_upload(object, self.device.timing.sdo_response) {
             Ok(Outcome::Done(value)) => value,
             Ok(Outcome::Refused(_)) | Err(Stop::Mismatch(_) | Stop::Undecided(_)) => {
@@ -170,11 +241,11 @@ impl Tester<'_> {
             }
             Err(stop) => return Err(stop),
         };
-        Ok(match value.of_size(Some(2)) {
-            [low, high, ..] => Some(u16::from_le_bytes([*low, *high])),
-            [low] => Some(u16::from(*low)),
-            [] => None,
-        })
+        let size = self.size_of(object);
+        let bytes = value.of_size(size).iter().take(4).rev();
+        Ok(Some(
+            bytes.fold(0, |number, byte| number << 8 | u32::from(*byte)),
+        ))
     }
 
     /// Takes down what the node says of itself until `instant`.

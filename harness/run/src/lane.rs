@@ -16,6 +16,7 @@ use fieldproof_wire::canopen::NodeId;
 use crate::applies::{Bench, skip_reason};
 use crate::case::CaseOutcome;
 use crate::entries;
+use crate::found::Found;
 use crate::history::History;
 use crate::node::NodeWatch;
 use crate::relocate::relocate;
@@ -100,7 +101,7 @@ pub fn play_lane(
         false => sink,
     };
     let mut player = Player::new(job, lane, sink, stop);
-    let found = player.tester.find_device();
+    player.found = player.tester.find_device();
     if job.explains {
         player.tester.read_identity();
     }
@@ -110,7 +111,7 @@ pub fn play_lane(
         }
         player.play_suite(suite);
     }
-    if let Some(found) = found {
+    if let Some(found) = &player.found {
         player.tester.leave_device(found);
     }
     let outcome = player.outcome;
@@ -132,6 +133,8 @@ struct Player<'a> {
     stop: &'a AtomicBool,
     tester: Tester<'a>,
     environment: Environment,
+    /// How the node was found.
+    found: Option<Found>,
     outcome: LaneOutcome,
     /// What the last look into the device showed.
     last_state: Option<State>,
@@ -178,6 +181,7 @@ impl<'a> Player<'a> {
                 address: job.bench.address.or(Some(1)),
                 identity: job.device.identity.numbers(),
             },
+            found: None,
             last_state: None,
             outcome: LaneOutcome {
                 counts: VerdictCounts::default(),
@@ -253,7 +257,8 @@ impl<'a> Player<'a> {
             self.job.device,
             self.job.dictionary,
             self.job.bench,
-        );
+        )
+        .or_else(|| self.found.as_ref()?.skip_reason(&case));
         let steps = match self.job.explains && skipped.is_none() {
             true => entries::written_steps(written, &self.environment, &case),
             false => Vec::new(),

@@ -7,6 +7,7 @@
 )]
 
 mod blocks;
+mod finding;
 mod judging;
 mod pdos;
 mod restoring;

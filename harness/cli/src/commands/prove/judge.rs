@@ -185,6 +185,7 @@ impl Finding {
             Expects::Passes | Expects::Line(Must::PassAll) => {
                 wrong(!self.passes(), Wrong::NotPassed)
             }
+            Expects::Line(Must::FailNothing) => wrong(!self.failed.is_empty(), Wrong::NotPassed),
             Expects::Line(Must::Show) => wrong(self.passes(), Wrong::NotSeen),
             Expects::Line(Must::PassNothing | Must::PassWhatIsOnlyHeard) => {
                 wrong(!self.passed_in_vain.is_empty(), Wrong::PassedInVain)

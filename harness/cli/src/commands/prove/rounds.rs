@@ -108,6 +108,7 @@ pub(super) fn rounds(
 fn rounds_of(device: &Device, library: &Library, options: &ProveOptions) -> Vec<Round> {
     let whole = Arc::new(device.clone());
     let sampled = Arc::new(device.with_some_of_each(&library.suites, ROWS_OF_A_WALK));
+    let configured = Arc::new(sampled.configured());
     let round = |device: &Arc<Device>, guise, behaviour, expects| Round {
         device: Arc::clone(device),
         guise,
@@ -167,7 +168,11 @@ fn rounds_of(device: &Device, library: &Library, options: &ProveOptions) -> Vec<
             ..Behaviour::default()
         };
         let expects = Expects::Line(trouble.must);
-        round(&sampled, Guise::Line(trouble.name), behaviour, expects)
+        let device = match trouble.configures() {
+            true => &configured,
+            false => &sampled,
+        };
+        round(device, Guise::Line(trouble.name), behaviour, expects)
     });
     [as_it_is]
         .into_iter()
