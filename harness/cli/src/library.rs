@@ -117,6 +117,18 @@ impl Device {
         }
     }
 
+    /// The same with other numbers on its lines.
+    pub(crate) fn numbered(&self, node: u8, address: u8) -> Device {
+        let mut device = self.clone();
+        if let Some(canopen) = &mut device.description.canopen {
+            canopen.node = node;
+        }
+        if let Some(modbus) = &mut device.description.modbus {
+            modbus.address = address;
+        }
+        device
+    }
+
     /// One that was configured: its defaults hold no more.
     pub(crate) fn configured(&self) -> Device {
         let mut device = self.clone();

@@ -203,8 +203,21 @@ pub(crate) const TROUBLES: &[NamedTrouble] = &[
     ),
     NamedTrouble {
         must: Must::FailNothing,
+        ..master_before("found-enabled", ENABLED)
+    },
+    NamedTrouble {
+        must: Must::FailNothing,
         ..master_before("found-configured", CONFIGURATION)
     },
+];
+
+/// A drive that another master has enabled, in velocity mode.
+const ENABLED: &[&str] = &[
+    "000#0100",
+    "SDO#2F60600003000000",
+    "SDO#2B40600006000000",
+    "SDO#2B40600007000000",
+    "SDO#2B4060000F000000",
 ];
 
 /// Much that another master may have stored: heartbeat, guarding, heartbeats that are watched, inhibit time of EMCY,

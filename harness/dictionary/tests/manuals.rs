@@ -55,6 +55,11 @@ const CLAIMS: [Claims; 3] = [
                 "1018:04",
                 "each unit has its own; the LSS frames carry 241000888",
             ),
+            (
+                "E094",
+                "3000:00",
+                "it is the node-ID that the unit has; the manual prints the one it comes with",
+            ),
         ]
     ),
     claims!("kinco-servo", &[]),

@@ -105,6 +105,12 @@ fn missing_need(
             "the bench does not offer the stimulus {}",
             stimulus_name(*name)
         )),
+        Need::AnotherNode(node) if bench.node == Some(*node) => Some(format!(
+            "node-ID {node}, which another node is to have, is that of the device"
+        )),
+        Need::AnotherAddress(address) if bench.address == Some(*address) => Some(format!(
+            "address {address}, which another slave is to have, is that of the device"
+        )),
         _ => None,
     })
 }

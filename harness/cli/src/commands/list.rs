@@ -140,6 +140,8 @@ fn listed_case(suite: &Suite, case: Case) -> ListedCase<'_> {
             let shown = functions.iter().map(ToString::to_string);
             format!("function: {}", shown.collect::<Vec<_>>().join(", "))
         }
+        Need::AnotherNode(node) => format!("another-node: {node}"),
+        Need::AnotherAddress(address) => format!("another-address: {address}"),
     };
     ListedCase {
         suite: &suite.head.suite,

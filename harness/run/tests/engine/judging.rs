@@ -314,6 +314,17 @@ fn what_is_not_claimed_or_not_permitted_is_skipped_with_the_reason() {
         played.case().reason.as_deref(),
         Some("the device does not claim lss")
     );
+    for (needed, reason) in [
+        (
+            "{another-node: 1}",
+            "node-ID 1, which another node is to have, is that of the device",
+        ),
+        ("{another-node: 2}", ""),
+    ] {
+        let needing = READ.replace("    steps:", &format!("    needs: {needed}\n    steps:"));
+        let played = Setup::default().play(answering(&[]), &needing);
+        assert_eq!(played.case().reason.as_deref().unwrap_or_default(), reason);
+    }
     let moving = READ.replace("    steps:", "    effects: [moves]\n    steps:");
     let played = Setup::default().play(answering(&[]), &moving);
     assert_eq!(

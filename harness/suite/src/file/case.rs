@@ -207,6 +207,10 @@ pub(crate) enum FullNeed {
     Object(OneOrMany<ObjectAddress>),
     /// Modbus functions that the device must claim: `3`, `8/4`.
     Function(OneOrMany<FunctionCode>),
+    /// A node-ID that the device must not have.
+    AnotherNode(u8),
+    /// A Modbus address that the device must not have.
+    AnotherAddress(u8),
 }
 
 impl TwoForms for Need {
@@ -222,6 +226,8 @@ impl TwoForms for Need {
             FullNeed::Stimulus(stimulus) => Need::Stimulus(stimulus),
             FullNeed::Object(objects) => Need::Objects(objects.0),
             FullNeed::Function(functions) => Need::Functions(functions.0),
+            FullNeed::AnotherNode(node) => Need::AnotherNode(node),
+            FullNeed::AnotherAddress(address) => Need::AnotherAddress(address),
         }
     }
 }

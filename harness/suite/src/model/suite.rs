@@ -123,6 +123,10 @@ pub enum Need {
     Objects(Vec<ObjectAddress>),
     /// Modbus functions that the description claims: `function: [3, 8/4]`.
     Functions(Vec<device::FunctionCode>),
+    /// A node-ID that the device does not have: `another-node: 111`.
+    AnotherNode(u8),
+    /// A Modbus address that the device does not have: `another-address: 247`.
+    AnotherAddress(u8),
 }
 
 /// How thorough a run is.

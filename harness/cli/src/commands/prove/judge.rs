@@ -105,7 +105,7 @@ pub(super) fn judge(rounds: &[Round], tallies: &[Tally], whole: bool) -> Proof {
                     cases.entry(case.clone()).or_default().push(fault);
                 }
             }
-            Guise::Variant(_) | Guise::Line(_) => {}
+            Guise::Variant(_) | Guise::Line(_) | Guise::Numbers { .. } => {}
         }
         finding.judge(&round.expects);
         if tally.hung {

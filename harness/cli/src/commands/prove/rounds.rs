@@ -23,6 +23,11 @@ pub(super) enum Guise {
     Variant(&'static str),
     Fault(String),
     Line(&'static str),
+    /// With this node-ID, or this Modbus address, or both.
+    Numbers {
+        node: Option<u8>,
+        address: Option<u8>,
+    },
 }
 
 /// One device in one guise, to be played with all suites.
@@ -80,6 +85,9 @@ impl Claim {
         }
     }
 }
+
+/// Node-IDs and Modbus addresses: the first and the last, and one that suites give to another node.
+const NUMBERS: [(u8, u8); 3] = [(1, 1), (127, 247), (111, 246)];
 
 /// A fault that is not one of a single value shows in any row of a walk, or in none: so many are played.
 const ROWS_OF_A_WALK: u16 = 8;
@@ -174,11 +182,29 @@ fn rounds_of(device: &Device, library: &Library, options: &ProveOptions) -> Vec<
         };
         round(device, Guise::Line(trouble.name), behaviour, expects)
     });
+    let numbers = NUMBERS
+        .iter()
+        .filter(|_| options.faults.is_empty())
+        .map(|(node, address)| {
+            let numbered = device.numbered(*node, *address);
+            // What a dictionary says with $NODEID is another number now.
+            let numbered = Arc::new(numbered.with_some_of_each(&library.suites, ROWS_OF_A_WALK));
+            let canopen = numbered.description.canopen.as_ref();
+            let modbus = numbered.description.modbus.as_ref();
+            let guise = Guise::Numbers {
+                node: canopen.map(|it| it.node),
+                address: modbus.map(|it| it.address),
+            };
+            // A switch may not have all positions, and cannot be put back then.
+            let expects = Expects::Line(Must::FailNothing);
+            round(&numbered, guise, Behaviour::default(), expects)
+        });
     [as_it_is]
         .into_iter()
         .chain(variants)
         .chain(faults)
         .chain(troubles)
+        .chain(numbers)
         .collect()
 }
 

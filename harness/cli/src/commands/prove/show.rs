@@ -120,6 +120,12 @@ fn title(guise: &Guise) -> String {
         Guise::Variant(name) => format!("variant {name}"),
         Guise::Fault(name) => format!("fault {name}"),
         Guise::Line(name) => format!("line {name}"),
+        Guise::Numbers { node, address } => {
+            let node = node.map(|node| format!("node {node}"));
+            let address = address.map(|address| format!("address {address}"));
+            let numbers: Vec<String> = node.into_iter().chain(address).collect();
+            numbers.join(", ")
+        }
     }
 }
 
