@@ -101,17 +101,18 @@ impl Tester<'_> {
             self.read_heartbeat(&mut heard)?;
             self.ask_for_state(&mut heard)?;
         }
+        let now = self.session.now();
+        self.listen_until(now, &mut heard)?;
         if answers && heard == Some(PLAYED_IN) {
-            let now = self.session.now();
             self.watch.found(PLAYED_IN, now);
         } else {
             self.command_into(PLAYED_IN)?;
             let settled = self.session.now() + self.device.timing.nmt_transition;
             self.session.collect_until(settled)?;
         }
-        // A node in Stopped answers no SDO request; whether this was why is seen now.
+        // A node in Stopped answers no SDO request; if nothing else was heard of it, that was why.
         if !answers && self.claims(Feature::SdoServer) && self.is_answered()? {
-            heard = Some(NmtState::Stopped);
+            heard = heard.or(Some(NmtState::Stopped));
             self.read_heartbeat(&mut heard)?;
         }
         Ok(Found {

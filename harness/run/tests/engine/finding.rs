@@ -107,3 +107,25 @@ fn cases_that_rest_on_an_identifier_that_was_changed_are_skipped() {
     assert_eq!(reason(moved_to, &never_configured), None);
     assert_eq!(reason([0x81, 0, 0, 0x40], &[Feature::Emergency]), None);
 }
+
+#[test]
+fn a_node_that_boots_later_than_promised_was_not_stopped() {
+    // It hears the probes, and boots by the last of them.
+    let mut memory = Memory::new(&[]);
+    let mut probes = 0;
+    let device = Scripted::new(move |request: &Frame| {
+        if request.id().raw() != 0x601 {
+            return Answers::new();
+        }
+        probes += 1;
+        match probes {
+            1..4 => Answers::new(),
+            4 => vec![soon("701#00")],
+            _ => memory.answer(request),
+        }
+    });
+    let seen = device.seen.clone();
+    let played = setup(&[]).play(device, READ);
+    assert_eq!(played.verdict(), (Verdict::Pass, ""));
+    assert_eq!(commands(&seen.lock().unwrap()), ["000#8001"]);
+}
