@@ -1,13 +1,13 @@
 //! What can be wrong with the line between the tester and a simulated device, and what the verdicts must come to then.
 
+mod left;
+
 use std::num::NonZeroU32;
 use std::time::Duration;
 
 use fieldproof_devices::DeviceKind;
 use fieldproof_devices::Medium;
-use fieldproof_link::{
-    BusError, FaultyLine, Lane, Line, LineFault, LinkError, PortIndex, PortProperties, Transmission,
-};
+use fieldproof_link::{BusError, FaultyLine, Lane, LineFault, PortIndex};
 use fieldproof_suite::device::DeviceDescription;
 
 /// What is wrong.
@@ -19,6 +19,8 @@ pub enum LineTrouble {
     Neighbour,
     /// Another master was there before, and sent these frames. `SDO` stands for the identifier of the device's requests.
     MasterBefore(&'static [&'static str]),
+    /// A Modbus client was there before, and sent these PDUs.
+    ClientBefore(&'static [&'static [u8]]),
 }
 
 /// A trouble with its name.
@@ -203,42 +205,18 @@ pub(crate) const TROUBLES: &[NamedTrouble] = &[
     ),
     NamedTrouble {
         must: Must::FailNothing,
-        ..master_before("found-enabled", ENABLED)
+        ..master_before("found-enabled", left::ENABLED)
     },
     NamedTrouble {
         must: Must::FailNothing,
-        ..master_before("found-configured", CONFIGURATION)
+        ..master_before("found-configured", left::CONFIGURATION)
     },
-];
-
-/// A drive that another master has enabled, in velocity mode.
-const ENABLED: &[&str] = &[
-    "000#0100",
-    "SDO#2F60600003000000",
-    "SDO#2B40600006000000",
-    "SDO#2B40600007000000",
-    "SDO#2B4060000F000000",
-];
-
-/// Much that another master may have stored: heartbeat, guarding, heartbeats that are watched, inhibit time of EMCY,
-/// and EMCY, SYNC, TIME, RPDO1 and TPDO1 under other identifiers. A device refuses what it does not have.
-const CONFIGURATION: &[&str] = &[
-    "SDO#2B171000C8000000",
-    "SDO#2B0C100064000000",
-    "SDO#2F0D100003000000",
-    "SDO#23161001E8037000",
-    "SDO#2B151000F4010000",
-    "SDO#2305100092060000",
-    "SDO#2312100093060000",
-    "SDO#2314100091060080",
-    "SDO#2314100091060000",
-    "SDO#2300140180060080",
-    "SDO#2300140180060000",
-    "SDO#2300180190060080",
-    "SDO#2F00180201000000",
-    "SDO#2300180190060040",
-    "SDO#2310100173617665",
-    "000#8100",
+    NamedTrouble {
+        name: "found-written",
+        trouble: LineTrouble::ClientBefore(left::WRITES),
+        on: On::Serial,
+        must: Must::FailNothing,
+    },
 ];
 
 /// Whatever another master left, a right device passes.
@@ -251,13 +229,11 @@ const fn master_before(name: &'static str, frames: &'static [&'static str]) -> N
     }
 }
 
-/// How long another master lets a device go on between two frames.
-const MASTER_PAUSE: Duration = Duration::from_millis(50);
-
 impl NamedTrouble {
     /// Whether the device is one that was configured.
     pub(crate) fn configures(&self) -> bool {
-        self.trouble == LineTrouble::MasterBefore(CONFIGURATION)
+        let configured = LineTrouble::MasterBefore(left::CONFIGURATION);
+        self.trouble == configured || self.trouble == LineTrouble::ClientBefore(left::WRITES)
     }
 
     /// Whether a line of such a device can have it.
@@ -285,35 +261,14 @@ impl LineTrouble {
                     lane = Box::new(FaultyLine::new(lane, PortIndex(port), fault));
                 }
             }
+            // A link that fails will fail again for the tester, who says so.
             LineTrouble::MasterBefore(frames) => {
-                let is_can = |port: &PortProperties| matches!(port.line, Line::Can { .. });
-                let can = lane.ports().iter().position(is_can);
-                let node = device.canopen.as_ref().map(|canopen| canopen.node);
-                if let (Some(can), Some(node)) = (can, node) {
-                    let request = format!("{:03X}", 0x600 + u16::from(node));
-                    let frames = frames.iter().map(|frame| frame.replace("SDO", &request));
-                    // A link that fails will fail again for the tester, who says so.
-                    let _ = play(lane.as_mut(), PortIndex(can), frames, device.timing.boot_up);
-                }
+                let _ = left::by_master(lane.as_mut(), device, frames);
+            }
+            LineTrouble::ClientBefore(requests) => {
+                let _ = left::by_client(lane.as_mut(), device, requests);
             }
         }
         lane
     }
-}
-
-/// Sends frames to a device that has booted; nobody hears what it says.
-fn play(
-    lane: &mut dyn Lane,
-    port: PortIndex,
-    frames: impl Iterator<Item = String>,
-    boot_up: Duration,
-) -> Result<(), LinkError> {
-    let mut until = lane.now() + boot_up;
-    while lane.receive(until)?.is_some() {}
-    for frame in frames.filter_map(|frame| frame.parse().ok()) {
-        lane.send(port, until, Transmission::Frame(frame))?;
-        until = lane.now() + MASTER_PAUSE;
-        while lane.receive(until)?.is_some() {}
-    }
-    Ok(())
 }

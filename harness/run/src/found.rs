@@ -13,7 +13,7 @@ use crate::node::HEARTBEAT;
 use crate::sdo::Outcome;
 use crate::session::Message;
 use crate::stop::Stop;
-use crate::tester::{DEVICE_TYPE, Tester};
+use crate::tester::{CAN, DEVICE_TYPE, Tester};
 use crate::unexpected::nmt_state;
 
 const GUARD_TIME: Multiplexer = Multiplexer::new(0x100C, 0);
@@ -86,12 +86,18 @@ impl Tester<'_> {
     /// Waits until a CANopen device is there, for it may have been powered with the lane, and boots first then; and brings
     /// it into the state that cases find it in. `None` for what has no NMT state, or if the link fails.
     pub(crate) fn find_device(&mut self) -> Option<Found> {
-        if self.node.is_none() || !self.claims(Feature::NmtSlave) {
+        if !self.is_nmt_slave_here() {
             return None;
         }
         let found = self.look().ok();
         self.session.begin_case();
         found
+    }
+
+    /// Whether the device has an NMT state that this bench can see: its CAN port may not be connected.
+    pub(crate) fn is_nmt_slave_here(&self) -> bool {
+        let is_connected = self.session.port(CAN).is_some() && self.node.is_some();
+        is_connected && self.claims(Feature::NmtSlave)
     }
 
     fn look(&mut self) -> Result<Found, Stop> {

@@ -7,6 +7,7 @@
 
 mod applies;
 mod case;
+mod coils;
 mod companions;
 mod entries;
 mod excerpt;

@@ -143,21 +143,17 @@ impl Tester<'_> {
                 }
             }
         }
-        for register in &case.restore.registers {
-            match self.registers_before(*register, 1)? {
-                Some(values) => {
-                    self.undo.push(Undo::Registers(*register, values));
-                }
-                None => {
-                    return Err(Stop::undecided(
-                        format!(
-                            "register {register:04X}h cannot be read before the case, so it could not be put back"
-                        ),
-                        "a value",
-                        "no value",
-                    ));
-                }
-            }
+        for span in &case.restore.registers {
+            match self.registers_before(span.first, span.count)? {
+                Some(values) => self.undo.push(Undo::Registers(span.first, values)),
+                None => return Err(unreadable("register", span.first)),
+            };
+        }
+        for span in &case.restore.coils {
+            match self.coils_before(*span)? {
+                Some(bytes) => self.undo.push(Undo::Coils(*span, bytes)),
+                None => return Err(unreadable("coil", span.first)),
+            };
         }
         Ok(())
     }
@@ -221,6 +217,7 @@ impl Tester<'_> {
         match undo {
             Undo::Object(object, bytes) => self.write_back(object, &bytes),
             Undo::Registers(first, values) => self.write_registers_back(first, &values),
+            Undo::Coils(span, bytes) => self.switch_coils_back(span, &bytes),
             Undo::PowerOn => {
                 self.give(&Stimulus::Power { on: true })?;
                 self.watch.boot_up_due = true;
@@ -305,7 +302,7 @@ impl Tester<'_> {
 
     /// Brings the node back into the state that cases find it in.
     fn settle_node(&mut self) -> Result<(), Stop> {
-        if self.node.is_none() || !self.claims(Feature::NmtSlave) {
+        if !self.is_nmt_slave_here() {
             return Ok(());
         }
         if self.watch.boot_up_due {
@@ -354,6 +351,16 @@ impl Tester<'_> {
     }
 }
 
+fn unreadable(what: &str, address: u16) -> Stop {
+    Stop::undecided(
+        format!(
+            "{what} {address:04X}h cannot be read before the case, so it could not be put back"
+        ),
+        "a value",
+        "no value",
+    )
+}
+
 fn registers_of(answer: &Answer, count: u16) -> Option<Vec<u16>> {
     let (head, data) = answer.pdu.split_first_chunk::<2>()?;
     let expected = usize::from(count) * 2;
@@ -366,7 +373,7 @@ fn registers_of(answer: &Answer, count: u16) -> Option<Vec<u16>> {
     })
 }
 
-fn not_put_back(what: &str, expected: &str, actual: &str) -> Stop {
+pub(crate) fn not_put_back(what: &str, expected: &str, actual: &str) -> Stop {
     Stop::mismatch(
         format!("{what} could not be put back"),
         expected,

@@ -1,6 +1,7 @@
 //! What a case has changed, last first.
 
 use fieldproof_link::{Line, PortIndex};
+use fieldproof_suite::model::Span;
 use fieldproof_wire::canopen::Multiplexer;
 
 /// Something to put back.
@@ -10,6 +11,8 @@ pub(crate) enum Undo {
     Object(Multiplexer, Vec<u8>),
     /// Registers from this one on held these values.
     Registers(u16, Vec<u16>),
+    /// Coils in a row stood so, the first in the lowest bit of the first byte.
+    Coils(Span, Vec<u8>),
     /// The power was on.
     PowerOn,
     /// A condition did not hold.

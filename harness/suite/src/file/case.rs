@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::num::NonZeroU16;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -10,7 +11,7 @@ use serde::de::{Deserializer, IgnoredAny};
 use crate::device::{Feature, FunctionCode};
 use crate::forms::{Either, OneOrMany, TwoForms};
 use crate::model::{
-    Depth, Effect, Forbidden, Located, Need, Protocol, Query, Source, Step, StimulusName,
+    Depth, Effect, Forbidden, Located, Need, Protocol, Query, Source, Span, Step, StimulusName,
     WrittenFor,
 };
 use crate::scalar::ObjectAddress;
@@ -107,10 +108,40 @@ pub(crate) struct RestoreFile {
     pub(crate) objects: Vec<ObjectAddress>,
     /// Holding registers read before the case and written back after it.
     #[serde(default)]
-    pub(crate) registers: Vec<u16>,
+    pub(crate) registers: Vec<Either<Span>>,
+    /// Coils read before the case and switched back after it.
+    #[serde(default)]
+    pub(crate) coils: Vec<Either<Span>>,
     /// Played at the end, whatever happened, before objects and registers are written back.
     #[serde(default)]
     pub(crate) steps: ReadLater<Vec<Step>>,
+}
+
+/// Addresses in a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(rename = "Span")]
+pub(crate) struct SpanFile {
+    /// The first address.
+    first: u16,
+    /// How many.
+    count: NonZeroU16,
+}
+
+impl TwoForms for Span {
+    type Short = u16;
+    type Full = SpanFile;
+
+    fn from_short(first: u16) -> Span {
+        Span { first, count: 1 }
+    }
+
+    fn from_full(span: SpanFile) -> Span {
+        Span {
+            first: span.first,
+            count: span.count.get(),
+        }
+    }
 }
 
 /// A row of a table; its cells may be anything.

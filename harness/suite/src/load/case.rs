@@ -91,7 +91,8 @@ pub(super) fn read<'a>(
         forbids: file.forbids.0,
         restore: Restore {
             objects: file.restore.objects,
-            registers: file.restore.registers,
+            registers: file.restore.registers.into_iter().map(|it| it.0).collect(),
+            coils: file.restore.coils.into_iter().map(|it| it.0).collect(),
             steps: restore,
         },
         control,

@@ -206,7 +206,18 @@ pub struct Restore {
     /// Objects read before the case and written back after it.
     pub objects: Vec<ObjectAddress>,
     /// Holding registers read before the case and written back after it.
-    pub registers: Vec<u16>,
+    pub registers: Vec<Span>,
+    /// Coils read before the case and switched back after it.
+    pub coils: Vec<Span>,
     /// Played at the end, whatever happened, before objects and registers are written back.
     pub steps: Vec<Located<Step>>,
+}
+
+/// Addresses in a row of one Modbus table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// The first of them.
+    pub first: u16,
+    /// How many; at least one.
+    pub count: u16,
 }

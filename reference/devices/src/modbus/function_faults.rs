@@ -98,7 +98,7 @@ faults! {
     "exception-status-long", "MODBUS application protocol V1.1b3, 6.7: the exception status is one byte",
         "answers 07h with two bytes", departure = Some(Departure::ExceptionStatusLong);
     "addresses-from-1", "MODBUS application protocol V1.1b3, 4.4: the first address in a PDU is 0",
-        "reads and writes one address too far", departure = Some(Departure::AddressesFromOne);
+        "reads and writes rows one address too far", departure = Some(Departure::AddressesFromOne);
     "coil-not-written", "MODBUS application protocol V1.1b3, 6.5: 05h switches a coil",
         "confirms 05h and does not do it", departure = Some(Departure::CoilNotWritten);
     "multiple-echoes-bytes", "MODBUS application protocol V1.1b3, 6.12: the answer to 10h has the number of registers",
@@ -116,7 +116,7 @@ faults! {
     "conditions-for-all", "MODBUS application protocol V1.1b3, 7: an exception says why this request cannot be done",
         "refuses everything while only some of it cannot be done", departure = Some(Departure::ConditionsForAll);
     "memory-lost", "the register map: what survives power-off",
-        "loses at power-off what should survive it", departure = Some(Departure::MemoryLost);
+        "loses at power-off the registers that should survive it", departure = Some(Departure::MemoryLost);
     "nothing-lost", "the register map: what does not survive power-off",
         "has after power-off what it had before", departure = Some(Departure::NothingLost);
     "reads-though-refused", "MODBUS application protocol V1.1b3, 6.17: 17h is refused if its write is",
