@@ -14,16 +14,8 @@ const WRITE_MULTIPLE_COILS: u8 = 0x0F;
 impl Tester<'_> {
     /// How coils stand, the first in the lowest bit of the first byte, if they can be read.
     pub(crate) fn coils_before(&mut self, span: Span) -> Result<Option<Vec<u8>>, Stop> {
-        let mut pdu = vec![READ_COILS];
-        pdu.extend(span.first.to_be_bytes());
-        pdu.extend(span.count.to_be_bytes());
-        let Some(address) = self.address else {
+        let Some(answer) = self.read_row(READ_COILS, span.first, span.count)? else {
             return Ok(None);
-        };
-        let answer = match self.modbus_exchange(address, &pdu, self.device.timing.modbus_response) {
-            Ok(Some(answer)) => answer,
-            Ok(None) | Err(Stop::Mismatch(_) | Stop::Undecided(_)) => return Ok(None),
-            Err(stop) => return Err(stop),
         };
         let length = usize::from(span.count).div_ceil(8);
         Ok(match answer.pdu.split_first_chunk::<2>() {

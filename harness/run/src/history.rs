@@ -3,7 +3,7 @@
 /// How many of the last deeds a failure names.
 const NAMED: usize = 3;
 
-/// What a case has done to the device, the last deed last. The same deed done several times in a row is one.
+/// What a case has last done to the device, the last deed last. The same deed done several times in a row is one.
 #[derive(Debug, Default)]
 pub(crate) struct History(Vec<String>);
 
@@ -15,13 +15,14 @@ impl History {
     pub(crate) fn add(&mut self, deed: String) {
         if self.0.last() != Some(&deed) {
             self.0.push(deed);
+            let too_many = self.0.len().saturating_sub(NAMED);
+            self.0.drain(..too_many);
         }
     }
 
     /// `what; after NMT reset node 10`
     pub(crate) fn tell(&self, what: &str) -> String {
-        let first = self.0.len().saturating_sub(NAMED);
-        match self.0.get(first..).unwrap_or_default() {
+        match self.0.as_slice() {
             [] => what.to_owned(),
             last => format!("{what}; after {}", last.join(", then ")),
         }

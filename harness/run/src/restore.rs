@@ -82,18 +82,27 @@ impl Tester<'_> {
         if self.undo.is_closed() {
             return Ok(None);
         }
-        let mut pdu = vec![0x03];
-        pdu.extend(first.to_be_bytes());
-        pdu.extend(count.to_be_bytes());
+        let answer = self.read_row(0x03, first, count)?;
+        Ok(answer.and_then(|answer| registers_of(&answer, count)))
+    }
+
+    /// What a function that reads `count` of a table answers, if it does.
+    pub(crate) fn read_row(
+        &mut self,
+        function: u8,
+        first: u16,
+        count: u16,
+    ) -> Result<Option<Answer>, Stop> {
         let Some(address) = self.address else {
             return Ok(None);
         };
-        let answer = match self.modbus_exchange(address, &pdu, self.device.timing.modbus_response) {
-            Ok(Some(answer)) => answer,
-            Ok(None) | Err(Stop::Mismatch(_) | Stop::Undecided(_)) => return Ok(None),
-            Err(stop) => return Err(stop),
-        };
-        Ok(registers_of(&answer, count))
+        let mut pdu = vec![function];
+        pdu.extend(first.to_be_bytes());
+        pdu.extend(count.to_be_bytes());
+        match self.modbus_exchange(address, &pdu, self.device.timing.modbus_response) {
+            Err(Stop::Mismatch(_) | Stop::Undecided(_)) => Ok(None),
+            answer => answer,
+        }
     }
 
     /// Registers are about to be written: their values before are put back after the case.
